@@ -23,7 +23,7 @@ std::vector<std::pair<double, double>> random_numbers() {
     return numbers;
 }
 
-/// For each of these normals, of any length, a line `nx ny nz  u0 u1  x y z  pdf`; pdf 0 where nothing is drawn.
+/// For each of these normals, of any length, a line `nx ny nz  u0 u1  x y z  pdf`; pdf 0 where nothing is sampled.
 constexpr float kNormals[][3] = {{0, 0, 1},  {1, 0, 0},    {-1, -0.001f, 0.5f}, {0.3f, -0.7f, -0.2f},
                                  {-2, 1, 1}, {0, 0.5f, -5}};
 

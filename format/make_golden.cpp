@@ -3,7 +3,7 @@
 //   make_golden OUTDIR
 //
 // The files in tests/golden/ were made by it and are frozen with each release: a reader of any later version
-// must draw the same samples from them, bit for bit. (One of them, `untilted`, has the curves that the variance fit
+// must sample the same samples from them, bit for bit. (One of them, `untilted`, has the curves that the variance fit
 // of environments once made. They stay legal, and nothing makes them any more.) A line of the text is
 //
 //   u0 u1  x y z  pdf
@@ -276,7 +276,7 @@ Chunk visibility_chunk(bool regions) {
     return chunk;
 }
 
-/// Two portals that face two ways, in pieces, beside visibility_chunk. The last place draws by rows alone.
+/// Two portals that face two ways, in pieces, beside visibility_chunk. The last place samples by rows alone.
 Chunk portals_chunk() {
     Chunk chunk{ACDF_CHUNK_PORTALS, {}};
     const AcdfPortals header = {2, 2, 3, 2};

@@ -1,4 +1,4 @@
-// Writes test vectors for readers of .acdf files: for each file NAME.acdf a NAME.csv of what is drawn from it and
+// Writes test vectors for readers of .acdf files: for each file NAME.acdf a NAME.csv of what is sampled from it and
 // of densities (format/vectors/README.md), and table.acdf, which golden files lack.
 //
 //   make_vectors OUTDIR FILE.acdf...
@@ -236,7 +236,7 @@ std::string table_rows(const acdf::TableView& view) {
         std::string bin;
         for (const std::uint32_t i : index) bin += std::to_string(i) + ',';
         for (const auto& [u0, u1] : random_numbers(12)) {
-            std::vector<double> u(sampled), x(sampled, 0.0); // nothing is drawn
+            std::vector<double> u(sampled), x(sampled, 0.0); // nothing is sampled
             for (std::uint32_t axis = 0; axis < sampled; ++axis)
                 u[axis] = axis == 0 ? u0 : axis == 1 ? u1 : random.next();
             const double pdf = view.sample(index.data(), u.data(), x.data());

@@ -1,4 +1,4 @@
-// acdf export: draws and densities of an environment, a local environment or a BRDF for shaders: functions in their
+// acdf export: samples and densities of an environment, a local environment or a BRDF for shaders: functions in their
 // languages, and tables.
 #include "shader/texts.h"
 #include "tools/cli/choice.h"
@@ -129,7 +129,7 @@ void add_export(CLI::App& program, int& exit_code) {
                                          {"json", Target::json}};
     auto options = std::make_shared<ExportArguments>();
     CLI::App* command = program.add_subcommand("export", "Write an environment, a local environment or a BRDF for "
-                                                         "shaders: functions that draw and evaluate, and tables");
+                                                         "shaders: functions that sample and evaluate, and tables");
     command
         ->add_option("FILE", options->file,
                      "The .acdf file of an environment, a local environment or a BRDF (- is stdin)")

@@ -195,7 +195,7 @@ void add_axis_options(CLI::App& command, TableArguments& options) {
         .add_option(
             "--indexed", options.table.indexed,
             "How many of the first axes are chosen by whoever samples (a view direction, a pixel) instead of "
-            "drawn: each combination of their indices is a bin with a density of its own")
+            "sampled: each combination of their indices is a bin with a density of its own")
         ->check(CLI::Range(0u, 5u))
         ->option_text("K [0]")
         ->group("Axes");
@@ -214,7 +214,7 @@ void add_axis_options(CLI::App& command, TableArguments& options) {
                                                          {"zero", input::BadValuePolicy::zero}};
     add_choice(command, "--bad-values", options.input.bad_values, policies,
                "What to do about NaN, infinities and negative numbers: error (refuse, and say how many and where) "
-               "or zero (nothing is drawn there)")
+               "or zero (nothing is sampled there)")
         ->option_text("NAME [error]")
         ->group("Input");
 }
@@ -230,7 +230,7 @@ void add_mis_options(CLI::App& command, TableArguments& options) {
     command
         .add_option(
             "--mis", options.other,
-            "Another table of the same shape, which your renderer also draws from, weighing both by multiple "
+            "Another table of the same shape, which your renderer also samples from, weighing both by multiple "
             "importance sampling: within each bin its numbers are its density. Where that is enough the "
             "density of the file is 0: never use such a file alone")
         ->type_name("")

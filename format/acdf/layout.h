@@ -223,7 +223,7 @@ typedef struct AcdfSplit {
 
 /* Chunk LOCL, of local environments: this, then its bright tiles. */
 typedef struct AcdfLocalHeader {
-    float cosine_share; /* in [0, 1): of samples drawn around the normal with density cos / pi */
+    float cosine_share; /* in [0, 1): of samples taken around the normal with density cos / pi */
     uint32_t bright_tile_count;
 } AcdfLocalHeader;
 
@@ -241,8 +241,8 @@ typedef struct AcdfBrightTile {
 typedef struct AcdfPartner {
     uint32_t kind;           /* AcdfPartnerKind, not 0 */
     uint32_t heuristic;      /* AcdfHeuristic */
-    float share;             /* of the samples, in (0, 1): what the fit was told that this file draws */
-    float recommended_light_share; /* in (0, 1]: of the samples that this file should draw, in the mean */
+    float share;             /* of the samples, in (0, 1): what the fit was told that this file samples */
+    float recommended_light_share; /* in (0, 1]: of the samples that this file should sample, in the mean */
     uint32_t record_count;
     uint32_t reserved; /* 0 */
 } AcdfPartner;

@@ -91,7 +91,7 @@ def octahedral_bins(N, n):
 
 
 class Point:
-    """What a normal draws from: `tree` (a root), or `mixture` and `bright tiles` (weights), or nothing."""
+    """What a normal samples from: `tree` (a root), or `mixture` and `bright tiles` (weights), or nothing."""
 
     tree = mixture = None
     cells = ()  # of its position
@@ -163,7 +163,7 @@ class Local:
             out.mixture, out.weights = mixture, weights
 
     def draw(self, point, u, box, s):
-        """Drawing from bright tiles and mixture."""
+        """Sampling from bright tiles and mixture."""
         x = u[0] * point.S
         if x < point.light_sum or not point.mixture:
             shining = [k for k, w in enumerate(point.weights) if w > 0]

@@ -73,7 +73,7 @@ class Portals:
         return lower + (v - j) * (upper - lower)
 
     def visible_portals(self, cells, x):
-        """What a position, x[0] to x[5], sees; None where it draws by its row alone."""
+        """What a position, x[0] to x[5], sees; None where it samples by its row alone."""
         share = sum_of([a * ((row.portals[0] + 1) / 256) for row, a in cells])
         if not share < 1:
             return None

@@ -14,7 +14,7 @@ class Table:
         self.sampled = axes[len(self.indexed):]
 
     def root(self, index):
-        """None where there is nothing to draw."""
+        """None where there is nothing to sample."""
         number = 0
         for axis, i in zip(self.indexed, index):
             if not 0 <= i < axis.resolution:
@@ -27,7 +27,7 @@ class Table:
         return [[0, axis.resolution] for axis in self.axes], [0.0] * len(self.axes)
 
     def sample(self, index, u):
-        """Returns the coordinates and the density; None and 0 where nothing is drawn."""
+        """Returns the coordinates and the density; None and 0 where nothing is sampled."""
         root, first = self.root(index), len(self.indexed)
         if root is None:
             return None, 0.0

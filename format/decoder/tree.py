@@ -1,4 +1,4 @@
-"""SPEC.md §5.4, §6.2 and §6.3: curves, and the walks that draw and find cells."""
+"""SPEC.md §5.4, §6.2 and §6.3: curves, and the walks that sample and find cells."""
 import math
 import struct
 from bisect import bisect_right

@@ -106,7 +106,7 @@ std::vector<double> integrals(const std::vector<compress::Grid>& bins) {
     return out;
 }
 
-/// A bin with any energy keeps a positive share, however small: share 0 says that there is nothing to draw.
+/// A bin with any energy keeps a positive share, however small: share 0 says that there is nothing to sample.
 std::vector<float> shares(const std::vector<double>& integrals) {
     std::vector<float> out;
     for (std::size_t i = 0; i + 1 < integrals.size(); ++i)

@@ -10,7 +10,7 @@
 
 namespace acdf::build {
 
-/// What the cells of bins cost beside those of another table, which is drawn in proportion to its own numbers
+/// What the cells of bins cost beside those of another table, which is sampled in proportion to its own numbers
 /// within each bin: water filling (docs/method.md), bin by bin. Where that table has no energy in a bin it is no
 /// partner.
 class TablePartner {
@@ -35,8 +35,8 @@ private:
 std::vector<BinAccuracy> measure_bins_beside(const File& file, const std::vector<compress::Grid>& bins,
                                              const std::vector<compress::Grid>& others);
 
-/// For each bin of such a file the share of samples to draw from it for the least second moment: a multiple of
-/// 1/32; 1 where there is nothing to draw.
+/// For each bin of such a file the share of samples to take from it for the least second moment: a multiple of
+/// 1/32; 1 where there is nothing to sample.
 std::vector<float> recommended_light_shares(const File& file, const std::vector<compress::Grid>& bins,
                                       const std::vector<compress::Grid>& others);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kCosines = 64;
 
-/// Density of light that a GGX lobe draws for a view: visible normals (Heitz, JCGT 2018), reflected.
+/// Density of light that a GGX lobe samples for a view: visible normals (Heitz, JCGT 2018), reflected.
 double ggx_pdf(double alpha, const std::array<double, 3>& wo, const std::array<double, 3>& wi) {
     std::array<double, 3> h{};
     double length = 0.0;

@@ -1,4 +1,4 @@
-// Draws and densities of arrays.
+// Samples and pdfs of arrays.
 #include "python/file.h"
 
 namespace acdf::python {

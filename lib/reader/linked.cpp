@@ -1,4 +1,4 @@
-// Draws and densities as symbols: loops over the inline functions, and waves.
+// Samples and pdfs as symbols: loops over the inline functions, and waves.
 #include "c_file.h"
 #include "memory.h"
 
@@ -18,7 +18,7 @@ using acdf::DirectionSample;
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr size_t kWave = 256; // directions and views of so many stay in the first cache
 
-// A direction that was drawn, if any.
+// A direction that was sampled, if any.
 float keep(const DirectionSample& sample, float direction[3]) {
     if (sample.pdf > 0.0f) std::memcpy(direction, sample.direction, sizeof sample.direction);
     return sample.pdf;
@@ -36,14 +36,14 @@ void for_each_item(std::size_t count, std::size_t each, Serve&& serve) {
         for (const std::size_t end = each < count - i ? i + each : count; i < end; ++i) serve(j, i);
 }
 
-// Draws `count` directions by draw(first, n, drawn), some of them at once.
+// Samples `count` directions by sample(first, n, sampled), some of them at once.
 template <class Draw>
 void draw_in_waves(std::size_t count, float* directions, float* pdfs, Draw&& draw) {
-    DirectionSample drawn[kWave];
+    DirectionSample sampled[kWave];
     for (std::size_t first = 0; first < count; first += kWave) {
         const std::size_t n = count - first < kWave ? count - first : kWave;
-        draw(first, n, drawn);
-        for (std::size_t i = 0; i < n; ++i) put(drawn[i], first + i, directions, pdfs);
+        draw(first, n, sampled);
+        for (std::size_t i = 0; i < n; ++i) put(sampled[i], first + i, directions, pdfs);
     }
 }
 
@@ -108,8 +108,8 @@ int acdf_sample_local_array(const AcdfFile* file, const float* normals, size_t e
     if (!serves(file, ACDF_KIND_LOCAL, each)) return 0;
     if (each == 1) {
         const acdf::LocalWavefront wavefront(file->file.local());
-        draw_in_waves(count, directions, pdfs, [&](size_t first, size_t n, DirectionSample* drawn) {
-            wavefront.sample(vectors_at(normals, first), pairs_at(u, first), n, drawn);
+        draw_in_waves(count, directions, pdfs, [&](size_t first, size_t n, DirectionSample* sampled) {
+            wavefront.sample(vectors_at(normals, first), pairs_at(u, first), n, sampled);
         });
         return 1;
     }
@@ -118,8 +118,8 @@ int acdf_sample_local_array(const AcdfFile* file, const float* normals, size_t e
     for (size_t j = 0, first = 0; first < count; first += each, ++j) { // a point, looked up once, serves several
         const AcdfLocalPoint point = view.at(normals + 3 * j);
         draw_in_waves(std::min(each, count - first), directions + 3 * first, pdfs + first,
-                      [&](size_t from, size_t n, DirectionSample* drawn) {
-                          wavefront.sample(point, pairs_at(u, first + from), n, drawn);
+                      [&](size_t from, size_t n, DirectionSample* sampled) {
+                          wavefront.sample(point, pairs_at(u, first + from), n, sampled);
                       });
     }
     return 1;
@@ -229,8 +229,8 @@ int acdf_brdf_waves_draw(const AcdfBrdfWaves* waves, const float* wo, size_t eac
                          float* wi, float* pdfs) {
     if (each == 0) return 0;
     float room[kWave][3];
-    draw_in_waves(count, wi, pdfs, [&](size_t first, size_t n, DirectionSample* drawn) {
-        waves->wavefront.sample(views_of(wo, each, first, n, room), pairs_at(u, first), n, drawn);
+    draw_in_waves(count, wi, pdfs, [&](size_t first, size_t n, DirectionSample* sampled) {
+        waves->wavefront.sample(views_of(wo, each, first, n, room), pairs_at(u, first), n, sampled);
     });
     return 1;
 }

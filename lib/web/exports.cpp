@@ -142,7 +142,7 @@ ACDF_EXPORT double acdf_web_share(const Opened* opened, const float* at) {
                                                   : 1.0;
 }
 
-/// Draws for `count` pairs of random numbers: x y z pdf each.
+/// Samples for `count` pairs of random numbers: x y z pdf each.
 ACDF_EXPORT void acdf_web_sample(const Opened* opened, const float* at, const double* u, std::size_t count,
                                  float* out) {
     for (std::size_t i = 0; i < count; ++i) {

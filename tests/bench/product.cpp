@@ -100,10 +100,10 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
                    double{kPoints * kDraws}});
     out.push_back({name + ", `sample` of 16 at once, 64 parts",
                    [=, &all] {
-                       ProductSample drawn[kDraws];
+                       ProductSample sampled[kDraws];
                        for (std::size_t i = 0; i < kPoints; ++i) {
-                           sampler.sample(points[i], kDraws, all[i].u, drawn);
-                           for (const ProductSample& s : drawn) sink = s.pdf;
+                           sampler.sample(points[i], kDraws, all[i].u, sampled);
+                           for (const ProductSample& s : sampled) sink = s.pdf;
                        }
                    },
                    double{kPoints * kDraws}});
@@ -119,12 +119,12 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
     out.push_back({name + ", `sample` of 16 at once, 64 parts, other numbers each turn",
                    [=] {
                        double u[kDraws][2];
-                       ProductSample drawn[kDraws];
+                       ProductSample sampled[kDraws];
                        for (const auto& point : points) {
                            for (auto& pair : u)
                                for (double& x : pair) x = other_number();
-                           sampler.sample(point, kDraws, u, drawn);
-                           for (const ProductSample& s : drawn) sink = s.pdf;
+                           sampler.sample(point, kDraws, u, sampled);
+                           for (const ProductSample& s : sampled) sink = s.pdf;
                        }
                    },
                    double{kPoints * kDraws}});
@@ -138,11 +138,11 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
                    double{kPoints * kDraws}});
     out.push_back({name + ", `at` of 64 parts and 16 samples at once, a sample",
                    [=, &all] {
-                       ProductSample drawn[kDraws];
+                       ProductSample sampled[kDraws];
                        for (const ShadingPoint& point_ : all) {
                            const auto point = sampler.at(point_.frame, point_.wo);
-                           sampler.sample(point, kDraws, point_.u, drawn);
-                           for (const ProductSample& s : drawn) sink = s.pdf;
+                           sampler.sample(point, kDraws, point_.u, sampled);
+                           for (const ProductSample& s : sampled) sink = s.pdf;
                        }
                    },
                    double{kPoints * kDraws}});

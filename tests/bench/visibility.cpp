@@ -4,7 +4,7 @@
 //   bench_visibility measure SCENE DATA POINTS SAMPLER...      rows of a table, the first is what others are compared
 //                                                          with; samplers as of acdf render: file:/A/FILE, portals,
 //                                                          mis(A,B)
-//   bench_visibility cost SCENE DATA POINTS FILE...            nanoseconds of a draw
+//   bench_visibility cost SCENE DATA POINTS FILE...            nanoseconds of a sample
 //
 // Variances are summed over all texels, with a shadow ray to the middle of each. The same sums are what samples are
 // held to: the mean of those of all points, and each point's own, in standard errors.
@@ -134,7 +134,7 @@ Sums sums_of(const ScenePoint& point, const measure::ProbeLight& light, const st
     return out;
 }
 
-/// Directions with light that a sampler never draws, of 10^5 of a point of the scene, a normal and a direction
+/// Directions with light that a sampler never samples, of 10^5 of a point of the scene, a normal and a direction
 /// each.
 int support_violations(const tools::LoadedScene& scene, const Measured& sampler) {
     const compress::VisibilityScene visibility = measure::visibility_scene(scene.scene.geometry);
@@ -163,12 +163,12 @@ int support_violations(const tools::LoadedScene& scene, const Measured& sampler)
         std::copy_n(n.begin(), 3, from.n);
         std::copy_n(n.begin(), 3, from.wo);
         std::copy_n(point.position.begin(), 3, from.position);
-        bool drawn = false;
+        bool sampled = false;
         for (const auto& part : parts) {
             part->move_to(from);
-            drawn = drawn || part->pdf(d.data()) > 0.0f;
+            sampled = sampled || part->pdf(d.data()) > 0.0f;
         }
-        violations += !drawn;
+        violations += !sampled;
     }
     return violations;
 }
@@ -190,7 +190,7 @@ volatile float sink;
 /// too.
 class CallTimes {
 public:
-    void time(const File& file, const std::vector<ScenePoint>& seen, std::size_t count, bool drawn) {
+    void time(const File& file, const std::vector<ScenePoint>& seen, std::size_t count, bool sampled) {
         std::mt19937_64 random(1);
         for (std::size_t first = 0, stretch = 0; first < kCalls; first += kStretch, ++stretch) {
             timespec time[2]{};
@@ -200,7 +200,7 @@ public:
                 const AcdfLocalPoint prepared = at(file, p.position, p.n);
                 const double u = static_cast<double>(random() >> 11) * 0x1p-53,
                              v = static_cast<double>(random() >> 11) * 0x1p-53;
-                sink = drawn ? file.local().sample(prepared, u, v).pdf : static_cast<float>(prepared.sum + u + v);
+                sink = sampled ? file.local().sample(prepared, u, v).pdf : static_cast<float>(prepared.sum + u + v);
             }
             clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time[1]);
             least_[stretch] = std::min(least_[stretch], 1e9 * static_cast<double>(time[1].tv_sec - time[0].tv_sec) +
@@ -221,11 +221,11 @@ int time_files(const tools::LoadedScene& scene, std::size_t count, const Files& 
     std::vector<std::array<CallTimes, 2>> times(given.files.size());
     for (int turn = 0; turn < 40; ++turn)
         for (std::size_t k = 0; k < times.size(); ++k)
-            for (std::size_t drawn = 0; drawn < 2; ++drawn)
-                times[k][drawn].time(given.files[k], seen, count, drawn == 1);
-    for (const auto& [prepared, drawn] : times)
-        std::printf("at and a draw: %.0f ns, %.2f of the first file's; at: %.0f ns\n", drawn.mean(),
-                    drawn.mean() / times[0][1].mean(), prepared.mean());
+            for (std::size_t sampled = 0; sampled < 2; ++sampled)
+                times[k][sampled].time(given.files[k], seen, count, sampled == 1);
+    for (const auto& [prepared, sampled] : times)
+        std::printf("at and a sample: %.0f ns, %.2f of the first file's; at: %.0f ns\n", sampled.mean(),
+                    sampled.mean() / times[0][1].mean(), prepared.mean());
     return 0;
 }
 

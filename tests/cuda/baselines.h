@@ -64,7 +64,7 @@ struct FullTable {
     }
 };
 
-/// The alias method. Sixteen bytes a texel, so that a draw is one load: what the texel keeps, its alias, and
+/// The alias method. Sixteen bytes a texel, so that a sample is one load: what the texel keeps, its alias, and
 /// the densities of both.
 struct AliasTable {
     TexelGrid grid;

@@ -1,4 +1,4 @@
-// Time of draws and densities on a GPU, beside samplers of all texels of a map.
+// Time of samples and densities on a GPU, beside samplers of all texels of a map.
 //
 //   cuda_bench environments COLUMNS FILE...   environments and their exported tables (.bin); maps of so
 //                                             many columns are what they are compared with
@@ -89,7 +89,7 @@ struct Nothing {
     __device__ float pdf(const float w[3]) const { return w[0] + w[1] + w[2]; }
 };
 
-/// Directions that a sampler draws, for calls that ask for densities there.
+/// Directions that a sampler samples, for calls that ask for densities there.
 template <class View>
 __global__ void draw_all(View view, const float2* u, float4* out) {
     const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
@@ -108,10 +108,10 @@ Timed time_pdf_of(const View& view, const Asked& asked) {
     return time(PdfOf<View>{view, asked});
 }
 template <class View>
-Row of_baseline(const char* name, const View& view, const Questions& q, const Asked& drawn) {
+Row of_baseline(const char* name, const View& view, const Questions& q, const Asked& sampled) {
     return {name,
             {time(SampleOf<View>{view, q.any()}), time(SampleOf<View>{view, q.coherent()}),
-             time_pdf_of(view, q.any()), time_pdf_of(view, drawn)}};
+             time_pdf_of(view, q.any()), time_pdf_of(view, sampled)}};
 }
 
 std::vector<char> bytes_of(const char* path) {
@@ -156,13 +156,13 @@ void environments(std::uint32_t columns, int count, char** paths, const Question
     const DeviceArray<float4> place(kCalls);
     std::vector<Row> rows;
     std::optional<Baselines> baselines;
-    Asked drawn = q.any();
+    Asked sampled = q.any();
     if (columns > 0) {
         baselines.emplace(acdf_bench::sky(columns));
-        drawn = at_sampled(baselines->alias(), q.any(), place);
-        rows.push_back(of_baseline("nothing but what is asked", Nothing{}, q, drawn));
-        rows.push_back(of_baseline("full table", baselines->full(), q, drawn));
-        rows.push_back(of_baseline("alias table", baselines->alias(), q, drawn));
+        sampled = at_sampled(baselines->alias(), q.any(), place);
+        rows.push_back(of_baseline("nothing but what is asked", Nothing{}, q, sampled));
+        rows.push_back(of_baseline("full table", baselines->full(), q, sampled));
+        rows.push_back(of_baseline("alias table", baselines->alias(), q, sampled));
         Row warp{"hierarchical warp",
                  {time(SampleOf<WarpTable>{baselines->warp(), q.any()}),
                   time(SampleOf<WarpTable>{baselines->warp(), q.coherent()})}};
@@ -175,7 +175,7 @@ void environments(std::uint32_t columns, int count, char** paths, const Question
             const std::uint32_t* words = exported.words.data();
             rows.push_back({name_of(paths[i]) + ", exported",
                             {time_exported_sample(words, q.any()), time_exported_sample(words, q.coherent()),
-                             time_exported_pdf(words, q.any()), time_exported_pdf(words, drawn)}});
+                             time_exported_pdf(words, q.any()), time_exported_pdf(words, sampled)}});
             continue;
         }
         for (const bool tables : {true, false}) {
@@ -183,11 +183,11 @@ void environments(std::uint32_t columns, int count, char** paths, const Question
             const acdf::EnvironmentView view = (*opened.there)(opened.file.environment());
             rows.push_back({name_of(paths[i]) + (tables ? "" : ", walked"),
                             {time_sample(view, q.any()), time_sample(view, q.coherent()), time_pdf(view, q.any()),
-                             time_pdf(view, drawn)}});
+                             time_pdf(view, sampled)}});
         }
     }
     print(("ns a call, " + std::to_string(columns) + " columns").c_str(),
-          "draw | draw, coherent numbers | density of uniform directions | density of drawn directions", rows);
+          "sample | sample, coherent numbers | density of uniform directions | density of sampled directions", rows);
 }
 
 void others(int count, char** paths, const Questions& q) {
@@ -222,8 +222,8 @@ void others(int count, char** paths, const Questions& q) {
     }
     if (!local.empty())
         print("ns a call, local",
-              "point and draw | 32 threads at a normal | one of 16 draws at a point | point and density", local);
-    if (!brdf.empty()) print("ns a call, BRDF", "draw | 32 threads at a view | density", brdf);
+              "point and sample | 32 threads at a normal | one of 16 samples at a point | point and density", local);
+    if (!brdf.empty()) print("ns a call, BRDF", "sample | 32 threads at a view | density", brdf);
 }
 
 } // namespace

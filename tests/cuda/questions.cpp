@@ -49,7 +49,7 @@ std::vector<Question> questions(std::size_t count, unsigned batch, const acdf::F
         for (std::size_t i = first; i < last; ++i) {
             Question& q = out[i];
             for (double& u : q.u) u = uniform(random);
-            if (i % 2 == 0) // floats, as renderers draw them
+            if (i % 2 == 0) // floats, as renderers sample them
                 for (double& u : q.u) u = std::min(static_cast<double>(static_cast<float>(u)), 1.0 - 0x1p-24);
             unit_vector(random, -1.0, q.direction);
             unit_vector(random, -1.0, q.normal);

@@ -5,7 +5,7 @@ namespace {
 
 constexpr unsigned kDraws = 16;
 
-/// As many draws at one point.
+/// As many samples at one point.
 struct Draws {
     acdf::LocalEnvironmentView view;
     Asked asked;

@@ -69,9 +69,9 @@ TEST_F(LocalCommand, OfAPartnerTellsIt) {
     EXPECT_TRUE(measured.at("combined").get<bool>());
     EXPECT_EQ(measured.at("support_violations"), 0);
     EXPECT_EQ(run_acdf({"validate", output}).code, 0);
-    const Result drawn = run_acdf({"sample", output, "-n", "1", "--normal", "0,0,1"});
-    EXPECT_EQ(drawn.code, 0);
-    EXPECT_NE(drawn.err.find("not to be used alone"), std::string::npos) << drawn.err;
+    const Result sampled = run_acdf({"sample", output, "-n", "1", "--normal", "0,0,1"});
+    EXPECT_EQ(sampled.code, 0);
+    EXPECT_NE(sampled.err.find("not to be used alone"), std::string::npos) << sampled.err;
     EXPECT_EQ(run_acdf({"sample", output, "-n", "1", "--normal", "0,0,1", "--quiet"}).err, "");
     for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--shares", "2:1"},
                                                   {"--heuristic", "power"},

@@ -39,7 +39,7 @@ void add_weighing(CLI::App& command, builder::Partner& partner) {
                 if (!parse_shares(text, partner))
                     throw CLI::ValidationError("--shares", "needs two numbers from 0.001 to 1000 such as 1:1");
             },
-            "Samples that your renderer draws from the file and from the partner, in proportion")
+            "Samples that your renderer takes from the file and from the partner, in proportion")
         ->option_text("L:B [1:1]")
         ->group(group);
     command

@@ -33,7 +33,7 @@ public:
             std::max(distance_.largest_ratio, low > 0.0 ? high / low : std::numeric_limits<double>::infinity());
     }
 
-    /// `empty`: of how many of the two nothing is drawn here.
+    /// `empty`: of how many of the two nothing is sampled here.
     void end(int empty) {
         const double share = empty == 1 ? 1.0 : count_ > 0 ? sum_ / double(count_) : 0.0;
         ++distance_.conditions;
@@ -47,8 +47,8 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Draws `samples` from each of two, (p + q) / 2 in all, and compares. `sample(which, u, x)` is false where nothing
-/// is drawn, `pdf(which, x)` a density; x are `Point`s.
+/// Samples `samples` from each of two, (p + q) / 2 in all, and compares. `sample(which, u, x)` is false where nothing
+/// is sampled, `pdf(which, x)` a density; x are `Point`s.
 template <class Point, class Sample, class Pdf>
 void meet(Distance& distance, std::uint32_t samples, std::uint32_t dimensions, const Sample& sample,
           const Pdf& pdf) {

@@ -1,4 +1,4 @@
-// How far two files are from each other, as what draws from them sees it.
+// How far two files are from each other, as what samples from them sees it.
 #pragma once
 
 #include <acdf/reader.h>

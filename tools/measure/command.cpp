@@ -212,7 +212,7 @@ void add_measure(CLI::App& program, int& exit_code) {
     add_json(command, options->json);
     add_quiet(command, options->quiet);
     command.footer(help_footer(
-        "No samples are drawn, so the figures carry no noise of their own. Against another source than "
+        "Nothing is sampled, so the figures carry no noise of their own. Against another source than "
         "the file's own "
         "a line on stderr says so; it is an error where that has light and the density is 0. Its own is read with "
         "the --projection that it was made with.",

@@ -257,7 +257,7 @@ void add_measurement_options(CLI::App& command, RenderArguments& options) {
         .add_option_function<std::string>(
             "--sequence",
             [&options, sequences](const std::string& name) { options.sequences = sequences.at(name); },
-            "Random numbers: independent ones; sobol, a scrambled Sobol' sequence in each pixel, as renderers draw "
+            "Random numbers: independent ones; sobol, a scrambled Sobol' sequence in each pixel, as renderers sample "
             "them; or both, one table each")
         ->check(CLI::IsMember({"independent", "sobol", "both"}))
         ->type_name("")

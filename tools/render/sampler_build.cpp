@@ -29,7 +29,7 @@ using measure::LightSamplerPtr;
 struct SamplerTable {
     std::shared_ptr<const void> keep;
     LightSamplerPtr sampler;
-    const File* file = nullptr; ///< that it draws from; null where there is none
+    const File* file = nullptr; ///< that it samples from; null where there is none
 };
 
 namespace {
@@ -258,7 +258,7 @@ struct SamplerBuilder::Store {
                                 : measure::product_warp_sampler(*light, spec.parts[1].alpha);
                 }).sampler;
     }
-    /// One that single directions are drawn from, made for `samples` at a point.
+    /// One that single directions are sampled from, made for `samples` at a point.
     const measure::LightSampler& single(const SamplerSpec& spec, std::size_t material, std::uint32_t samples) {
         if (spec.kind == SamplerKind::product) return product(spec, material, samples);
         return spec.kind == SamplerKind::warp ? warp(spec, material) : sampler(spec, material);

@@ -36,7 +36,7 @@ public:
 
     /// Valid as long as the builder. Throws SpecError, Failure or std::exception, which name the sampler.
     BuiltSampler build(const SamplerSpec& spec, std::uint32_t samples);
-    /// What one draws from that is no mis(...), ris or strata.
+    /// What one samples from that is no mis(...), ris or strata.
     const measure::LightSampler& single(const SamplerSpec& spec, std::size_t material, std::uint32_t samples);
 
 private:

@@ -12,7 +12,7 @@
 namespace acdf::tools {
 
 enum class SamplerKind {
-    full_cdf,   ///< full-cdf: the probe's full-resolution CDF, directions below the horizon drawn in vain
+    full_cdf,   ///< full-cdf: the probe's full-resolution CDF, directions below the horizon sampled in vain
     cosine,     ///< cosine: of the hemisphere
     tiles,      ///< tiles:32x16: of the probe, weighed at each point, the full CDF inside; tiles:12x12(brdf:64KiB):
                 ///< weighed by the BRDF, too

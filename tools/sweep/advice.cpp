@@ -72,7 +72,7 @@ std::string picture_rule(const Sweep& sweep) {
         ", in each of four situations: nothing hidden and behind the sphere and the wall of the demo "
         "scene, with samples of the light alone and with half of them the surface's own. ";
     text += sweep.timed ? "Noise is that after the same time, of which a sample takes " +
-                              short_number(sweep.costs.shadow_ray_ns) + " ns beside its drawing (--shadow-ray-ns)."
+                              short_number(sweep.costs.shadow_ray_ns) + " ns beside its sampling (--shadow-ray-ns)."
                         : "Noise is that after the same samples: nothing was timed.";
     if (sweep.numbers == measure::Numbers::sobol) text += " Samples are of a scrambled Sobol' sequence.";
     return text;
@@ -126,7 +126,7 @@ std::string named(const Sweep& sweep, const Advice& advice, Verdict verdict) {
 void add_time_findings(const Sweep& sweep, Advice& advice, const SweepRow& best) {
     const std::string than = " Figures are the baseline's variance over that of the " + to_readable_size(best.bytes) +
                              " file after the same time, of which a sample takes " +
-                             short_number(sweep.costs.shadow_ray_ns) + " ns beside its drawing.";
+                             short_number(sweep.costs.shadow_ray_ns) + " ns beside its sampling.";
     const std::string baselines = named(sweep, advice, Verdict::baseline), even = named(sweep, advice, Verdict::even),
                       ours = named(sweep, advice, Verdict::ours);
     if (!baselines.empty()) advice.findings.push_back("At equal time a baseline wins: " + baselines + "." + than);

@@ -17,7 +17,7 @@ enum class Verdict { ours, baseline, even, unknown };
 struct BaselineComparison {
     std::size_t row = 0; ///< the baseline
     double bytes = kUnknown, variance = kUnknown;
-    Interval time, equal_time;          ///< of drawing a sample; of the variance after the same time
+    Interval time, equal_time;          ///< of sampling a sample; of the variance after the same time
     Verdict verdict = Verdict::unknown; ///< at equal time; even: the interval holds 1
 };
 

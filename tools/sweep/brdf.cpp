@@ -201,10 +201,10 @@ Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const bui
         [&](const Step& step) { return make_file(brdf, options, step); }, part(0.0, 0.7));
     part(0.7, 0.0)(0.0, "measuring baselines");
     sweep.reference = candidates.size();
-    std::vector<SampledPoint> drawn;
-    for (Candidate& baseline : baselines(brdf, reflected, options.views, drawn)) candidates.push_back(std::move(baseline));
+    std::vector<SampledPoint> sampled;
+    for (Candidate& baseline : baselines(brdf, reflected, options.views, sampled)) candidates.push_back(std::move(baseline));
     part(0.8, 0.0)(0.0, "drawing");
-    add_sobol(reflected, drawn, options, candidates);
+    add_sobol(reflected, sampled, options, candidates);
     if (options.pictures) add_pictures(sweep, reflected, candidates);
     std::vector<ShadingPoint> points;
     for (const compress::View& view : build::random_views(4096, false)) points.push_back(point_of(view));

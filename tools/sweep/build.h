@@ -24,7 +24,7 @@ struct StoredFile {
     File file;
 };
 
-/// A row on its way: with what draws its samples.
+/// A row on its way: with what samples its samples.
 struct Candidate {
     SweepRow row;
     std::shared_ptr<const measure::LightSampler> sampler;

@@ -79,12 +79,12 @@ void add_situations(const compress::Target& target, const measure::LightSampler&
                     const SweepOptions& options, Lit* out) {
     const std::vector<PointVariance> exact = point_variances(target, density, points);
     const SurfaceVariances variances = summary(exact, scale);
-    const SampledVariances drawn =
+    const SampledVariances sampled =
         sobol_variances(target, sampler, points, exact, scale, options.visible.spp, options.seeds);
     out[0] = variances.alone;
     out[1] = variances.partner;
-    out[0].sobol = std::isinf(out[0].mean) ? HUGE_VAL : drawn.alone;
-    out[1].sobol = drawn.partner;
+    out[0].sobol = std::isinf(out[0].mean) ? HUGE_VAL : sampled.alone;
+    out[1].sobol = sampled.partner;
 }
 
 } // namespace

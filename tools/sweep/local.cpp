@@ -105,7 +105,7 @@ void add_local_pictures(Sweep& sweep, const compress::Target& target, const std:
     }
 }
 
-/// Files and baselines with a renderer's points; not where those draw numbers of their own.
+/// Files and baselines with a renderer's points; not where those sample numbers of their own.
 void add_sobol(const compress::Target& target, const std::vector<build::Normal>& normals,
                const SweepOptions& options, std::vector<Candidate>& candidates) {
     const std::vector<SurfacePoint> points = in_the_open(normals);

@@ -121,7 +121,7 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
                    "Variance times time, in units of one sample of the " + base + ". " +
                        (sweep.kind == SweepKind::environment ? "Of irradiance on a diffuse surface. " : "") +
                        "A sample takes " + short_number(sweep.costs.shadow_ray_ns) +
-                       " ns beside its drawing: a shadow ray, a BRDF (--shadow-ray-ns).",
+                       " ns beside its sampling: a shadow ray, a BRDF (--shadow-ray-ns).",
                    "variance at equal time", [](const Sweep& s, const SweepRow& r) {
                        const Interval t = cost_ratio(r, s.rows[s.reference], open_alone, s.costs);
                        return Interval{t.value * r.shaded(), t.low * r.shaded(), t.high * r.shaded()};
@@ -270,12 +270,12 @@ std::string method_html(const Sweep& sweep) {
             "are divided by E^2 + (0.1 mean E)^2, E of the point, so that a few nearly black ones do not decide. "
             "Columns "
             "named sobol (in sweep.csv) are variance times samples with scrambled Sobol' points, at " +
-            std::to_string(sweep.visible.spp) + " samples, by drawing them.");
+            std::to_string(sweep.visible.spp) + " samples, by taking them.");
     else
         lines.push_back(std::string("Means are over ") + conditions + " random " + conditions_text(sweep.kind) +
                         ", none chosen for what a file stores. With Sobol' points: variance times samples with a "
                         "scrambled Sobol' sequence, at " +
-                        std::to_string(sweep.visible.spp) + " samples, by drawing them.");
+                        std::to_string(sweep.visible.spp) + " samples, by taking them.");
     if (sweep.timed)
         lines.push_back(
             "Times: one thread, all samplers in turn within each of many rounds, so that what slows the "

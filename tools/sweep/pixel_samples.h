@@ -1,4 +1,4 @@
-// Variances of pixels where a renderer's numbers are not independent: by drawing samples.
+// Variances of pixels where a renderer's numbers are not independent: by sampling samples.
 #pragma once
 
 #include "measure/random.h"
@@ -11,7 +11,7 @@
 
 namespace acdf::tools {
 
-/// Where samples are drawn, and the integral of what is reflected there, by summation; 0: nothing is.
+/// Where samples are taken, and the integral of what is reflected there, by summation; 0: nothing is.
 struct SampledPoint {
     measure::ShadingPoint shading;
     double integral = 0.0;

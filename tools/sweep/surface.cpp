@@ -44,14 +44,14 @@ namespace {
 /// Integrals over what a point sees. With p + b in the place of p, weights of the balance heuristic are p / (p +
 /// b).
 struct Sums {
-    compress::Sum irradiance, alone, partner, drawn, cosine;
+    compress::Sum irradiance, alone, partner, sampled, cosine;
     bool violated = false;
 
     void add_row(const double row[5], double measure) {
         irradiance.add(row[0] * measure);
         alone.add(row[1] * measure);
         partner.add(row[2] * measure);
-        drawn.add(row[3] * measure);
+        sampled.add(row[3] * measure);
         cosine.add(row[4] * measure);
     }
     PointVariance result() const {
@@ -61,7 +61,7 @@ struct Sums {
         if (!(e > 0.0)) return out;
         out.alone = violated ? HUGE_VAL : std::max(0.0, alone.value() - e * e);
         // Of one sample of each (Veach and Guibas, SIGGRAPH 1995); one of both together has twice that.
-        const double of_two = partner.value() - drawn.value() * drawn.value() - cosine.value() * cosine.value();
+        const double of_two = partner.value() - sampled.value() * sampled.value() - cosine.value() * cosine.value();
         out.partner = 2.0 * std::max(0.0, of_two);
         return out;
     }

@@ -35,7 +35,7 @@ std::vector<SurfacePoint> in_the_open(const std::vector<build::Normal>& normals)
 struct PointVariance {
     double irradiance = 0.0;
     double alone = 0.0;   ///< of f/p
-    double partner = 0.0; ///< half of the samples drawn by p, half by the cosine, weighed by the
+    double partner = 0.0; ///< half of the samples taken by p, half by the cosine, weighed by the
                           ///< balance heuristic
 };
 

@@ -46,7 +46,7 @@ public:
         double sum = 0.0;
         random.begin_set();
         for (std::uint32_t i = 0; i < samples / 2; ++i) {
-            const AcdfDirectionSample s = drawn(random);
+            const AcdfDirectionSample s = sampled(random);
             if (s.pdf > 0.0f)
                 sum +=
                     integrand(s.direction) / (double{s.pdf} + CosineHemisphere::pdf(point_.n.data(), s.direction));
@@ -61,7 +61,7 @@ public:
     }
 
 private:
-    AcdfDirectionSample drawn(measure::Random& random) const {
+    AcdfDirectionSample sampled(measure::Random& random) const {
         const std::array<double, 2> u = random.pair();
         return sampler_.sample(u[0], u[1]);
     }
@@ -80,7 +80,7 @@ SampledVariances sobol_variances(const compress::Target& target, const measure::
                                Scale scale, std::uint32_t samples, std::uint32_t seeds) {
     samples += samples % 2;
     const measure::ProbeGrid grid(target);
-    std::vector<PointVariance> drawn(points.size());
+    std::vector<PointVariance> sampled(points.size());
     compress::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         const std::unique_ptr<measure::PointSampler> own = sampler.point_sampler();
         Draws draws(target, grid, *own, points[i]);
@@ -90,9 +90,9 @@ SampledVariances sobol_variances(const compress::Target& target, const measure::
             alone.push_back(draws.alone(random, samples));
             partner.push_back(draws.partner(random, samples));
         }
-        drawn[i] = {exact[i].irradiance, unbiased_variance(alone) * samples, unbiased_variance(partner) * samples};
+        sampled[i] = {exact[i].irradiance, unbiased_variance(alone) * samples, unbiased_variance(partner) * samples};
     });
-    const SurfaceVariances out = summary(drawn, scale);
+    const SurfaceVariances out = summary(sampled, scale);
     return {out.alone.mean, out.partner.mean};
 }
 
@@ -100,10 +100,10 @@ double sobol_variance(const compress::Target& target, const measure::LightSample
                       const std::vector<SurfacePoint>& points, const std::vector<double>& irradiances,
                       std::uint32_t samples, std::uint32_t seeds) {
     const measure::ProbeGrid grid(target);
-    std::vector<SampledPoint> drawn;
-    for (std::size_t i = 0; i < points.size(); ++i) drawn.push_back({shading_of(points[i]), irradiances[i]});
+    std::vector<SampledPoint> sampled;
+    for (std::size_t i = 0; i < points.size(); ++i) sampled.push_back({shading_of(points[i]), irradiances[i]});
     return sobol_variance(
-        sampler, drawn, [&](std::size_t i, const float wi[3]) { return lit_texel(target, grid, points[i], wi); },
+        sampler, sampled, [&](std::size_t i, const float wi[3]) { return lit_texel(target, grid, points[i], wi); },
         samples, seeds);
 }
 

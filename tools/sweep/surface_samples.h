@@ -1,4 +1,4 @@
-// Variances of what a diffuse surface reflects where a renderer's numbers are not independent: by drawing samples.
+// Variances of what a diffuse surface reflects where a renderer's numbers are not independent: by sampling samples.
 #pragma once
 
 #include "tools/sweep/surface.h"

@@ -46,7 +46,7 @@ enum Situation : std::size_t { open_alone, open_partner, hidden_alone, hidden_pa
 /// Relative variance of one sample over points of a surface, exact. Infinite: biased.
 struct Lit {
     double mean = kUnknown, median = kUnknown, worst = kUnknown;
-    /// Of scrambled Sobol' points: the variance of a pixel times its samples, mean over points, by drawing them.
+    /// Of scrambled Sobol' points: the variance of a pixel times its samples, mean over points, by taking them.
     double sobol = kUnknown;
 };
 
@@ -93,10 +93,10 @@ struct VisibleNoise {
     double largest_variance() const { return threshold * threshold * spp; }
 };
 
-/// What counts at equal time beside the drawing of light's samples.
+/// What counts at equal time beside the sampling of light's samples.
 struct SampleCosts {
     double shadow_ray_ns = 500.0; ///< what else a sample costs: a ray, a BRDF
-    double cosine_ns = 0.0;       ///< to draw one of the surface's samples and to evaluate its density
+    double cosine_ns = 0.0;       ///< to sample one of the surface's samples and to evaluate its density
 };
 
 struct Sweep {

@@ -38,7 +38,7 @@ using ViewPdf = std::function<double(const double wo[3], const double wi[3])>;
 std::vector<compress::View> random_views(std::uint32_t count, bool isotropic, double low = 0.1, double high = 1.0);
 
 /// Sums over a grid of half-vectors, rows x columns, finer than any fit sees and not aligned with it, and over the
-/// same grid the part of samples that falls below the horizon: no samples are drawn. The density is taken to
+/// same grid the part of samples that falls below the horizon: no samples are taken. The density is taken to
 /// integrate to 1, and counts as if it did over the grid, too: what the grid misses of a narrow lobe would else be
 /// told as variance or as the lack of it.
 ///

@@ -20,7 +20,7 @@ inline double recommendable_share(std::size_t k) {
 }
 
 /// Sums over texels of an integrand f, for densities p of the file and b of its partner. Of N samples a `share` is
-/// drawn from the file, the others from the partner.
+/// sampled from the file, the others from the partner.
 class Combination {
 public:
     Combination(double share, AcdfHeuristic heuristic) : share_(share), power_(heuristic == ACDF_HEURISTIC_POWER) {}

@@ -145,15 +145,15 @@ private:
     struct Row {
         const float* n;
         const TilePicture& picture;
-        /// Probabilities without the share around the normal; empty: nothing is drawn.
+        /// Probabilities without the share around the normal; empty: nothing is sampled.
         const std::vector<double>& tile;
-        double share;            ///< that is drawn around the normal
+        double share;            ///< that is sampled around the normal
         Combination both, baseline; ///< with the partner
         double largest = 0.0;
         std::uint64_t violations = 0;
     };
 
-    /// Of files that are drawn from alone, of the integrand g, without slopes and shares: most are.
+    /// Of files that are sampled from alone, of the integrand g, without slopes and shares: most are.
     bool is_plain(const Row& state) const {
         return !local_.partner && target_.means.empty() && target_.peaks.empty() && state.picture.slope.empty() &&
                state.share == 0.0 && !state.tile.empty();
@@ -223,7 +223,7 @@ private:
         const double* const measures = target_.column_measure.data();
         const float* const values = target_.row(r);
         const double height = target_.row_measure[r], share = state.share;
-        const bool drawn = !state.tile.empty(), alone = !local_.partner, means_differ = !target_.means.empty();
+        const bool sampled = !state.tile.empty(), alone = !local_.partner, means_differ = !target_.means.empty();
         const Slope* const slopes = state.picture.slope.empty() ? nullptr : state.picture.slope.data() + row;
         const float* const peaks = target_.peaks.empty() ? nullptr : target_.peaks.data() + row;
         // Copies, which compilers keep in registers.
@@ -231,7 +231,7 @@ private:
         std::uint64_t violations = 0;
         compress::ChannelSums irradiance;
         cosines_.for_each_above(state.n, r, [&](std::uint32_t c, double cosine) {
-            const double light_p = drawn ? probability[tiles[c]] * densities[c] : 0.0;
+            const double light_p = sampled ? probability[tiles[c]] * densities[c] : 0.0;
             const double rest = share > 0.0 ? share * cosine / ACDF_PI : 0.0, p = light_p + rest;
             const double omega = height * measures[c], g = values[c];
             first += light_p * omega;
@@ -269,8 +269,8 @@ private:
 
     NormalAccuracy sum(const float n[3], const TilePicture& picture, std::vector<double> tile) const {
         NormalAccuracy out;
-        const bool drawn = !tile.empty(), alone = !local_.partner;
-        const double share = drawn ? double{local_.cosine_share} : 0.0;
+        const bool sampled = !tile.empty(), alone = !local_.partner;
+        const double share = sampled ? double{local_.cosine_share} : 0.0;
         for (double& probability : tile) probability *= 1.0 - share;
         Row state{n, picture, tile, share, no_combination(), no_combination()};
         std::vector<double> cosines(is_plain(state) ? target_.columns : 0);
@@ -292,8 +292,8 @@ private:
         const double mean = target_.means.empty() ? e : irradiance.length();
         out.relative_variance = out.support_violations > 0 ? std::numeric_limits<double>::infinity()
                                                            : std::max(0.0, second.value() / mean / mean - 1.0);
-        // What is drawn around the normal lies above its horizon, all of it.
-        out.share_above_horizon = drawn ? std::min(first_above.value() + share, 1.0) : 0.0;
+        // What is sampled around the normal lies above its horizon, all of it.
+        out.share_above_horizon = sampled ? std::min(first_above.value() + share, 1.0) : 0.0;
         out.max_weight = state.largest / mean;
         out.relative_variance_full_cdf = std::max(0.0, total_ / mean * (light_second.value() / mean) - 1.0);
         out.share_above_horizon_full_cdf = light.value() / total_;

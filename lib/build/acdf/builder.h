@@ -214,7 +214,7 @@ enum class BinTarget {
 /// How bins that share tiles are stored.
 enum class LocalShape {
     small, ///< least noise for its bytes
-    fast,  ///< grids in tiles and sums in rows, which are searched by vectors: draws and densities take 0.6 of the
+    fast,  ///< grids in tiles and sums in rows, which are searched by vectors: samples and densities take 0.6 of the
            ///< time
     automatic ///< both are made: fast where its variance and its size are at most 1.15 times those of small, for
               ///< then it has no more noise after the same time (of those that reach a variance: where it is no
@@ -244,7 +244,7 @@ struct Visibility {
     /// From the scene's coordinates, in which a renderer tells positions, to those of points here, a row a
     /// coordinate: x' = t[0] x + t[1] y + t[2] z + t[3].
     float transform[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
-    /// Windows and doors that light comes through, at most 8: samples are drawn through them, exactly, and by the
+    /// Windows and doors that light comes through, at most 8: samples are taken through them, exactly, and by the
     /// rows of visibility cells for all that comes in another way. With them `transform` turns, mirrors, moves and scales as
     /// a whole, to the frame of directions.
     std::vector<Portal> portals;
@@ -259,7 +259,7 @@ struct LocalOptions {
     std::uint32_t tiles = 0;              ///< up to ACDF_MAX_TILES; 0: as suits the size
     double max_weight = 0.0;              ///< with sharing: the largest measured weight, as FitOptions; 0: no bound
     std::vector<SceneNormal> normals;     ///< only what a scene has; empty: all normals
-    double cosine_share = 0.0;            ///< of samples that are drawn around the normal instead, in [0, 0.99]
+    double cosine_share = 0.0;            ///< of samples that are taken around the normal instead, in [0, 0.99]
     bool sharing = true;                  ///< bins share tiles; else each has a tree of its own, larger and noisier
     LocalShape shape = LocalShape::automatic; ///< fast: with sharing, without max_weight, an MIS partner and visibility
     BinTarget bin_target = BinTarget::mean;   ///< without sharing

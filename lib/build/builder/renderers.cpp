@@ -98,7 +98,7 @@ constexpr Renderer known[] = {
      false,
      false,
      ACDF_HEURISTIC_BALANCE,
-     "it filters the map and draws no samples, so that the file serves other programs of that frame, alone"},
+     "it filters the map and takes no samples, so that the file serves other programs of that frame, alone"},
     {"unreal",
      latlong(Wrap::clamp),
      {-2, -1, 3},

@@ -43,7 +43,7 @@ struct Worth {
     /// Mean over the bins of sin^2 / (cos E), kept finite near the horizon: what a smaller spread of its tile
     /// saves.
     CoarseMap spread;
-    /// Largest share of the samples of any normal that light at its horizon could draw by mistake, per unit of
+    /// Largest share of the samples of any normal that light at its horizon could sample by mistake, per unit of
     /// light.
     CoarseMap alarm;
     double band = 0.0; ///< sine below which light counts as at the horizon
@@ -51,7 +51,7 @@ struct Worth {
 
 /// Which tiles become bright tiles.
 struct BrightTileRule {
-    double alarm = 0.002; ///< those whose light could draw more by mistake
+    double alarm = 0.002; ///< those whose light could sample more by mistake
     double radius = 0.03; ///< radians; a light is no larger
     bool few = false;     ///< bright tiles are not divided further; else they are the smaller the brighter they are
 };

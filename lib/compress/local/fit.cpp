@@ -58,7 +58,7 @@ BrightTileRule divide(const Target& target, const Worth& worth, std::uint32_t co
     return rule;
 }
 
-/// Tiles of light so bright that, near the horizon, mixing the rows of bins would draw many samples below it.
+/// Tiles of light so bright that, near the horizon, mixing the rows of bins would sample many samples below it.
 std::vector<AcdfBrightTile> find_lights(const Target& target, const TileTree& tiles, const TileInsides& insides,
                                    double total, const Worth& worth, const BrightTileRule& rule) {
     std::vector<std::pair<double, AcdfBrightTile>> found;
@@ -108,7 +108,7 @@ std::vector<std::uint8_t> row_above(const LocalFit& fit, std::vector<double> cos
     return row;
 }
 
-/// Rows and shares of all bins that occur; `costs(bin)` are what tiles are drawn in proportion to, and
+/// Rows and shares of all bins that occur; `costs(bin)` are what tiles are sampled in proportion to, and
 /// `put(bin, costs)` stores that.
 template <class Costs, class Put>
 void fill_rows(const Costs& costs, const Put& put, LocalFit& out) {

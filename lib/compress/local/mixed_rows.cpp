@@ -25,7 +25,7 @@ constexpr double kCornerShare = 0.2;
 constexpr std::size_t kNearby = 3; // normals of a triangle follow each other: nearly the same tiles are cut
 static_assert(kNearby <= TileLight::views_at_once, "");
 
-/// A normal that draws from a mixture, on a face of the octahedron that the bins divide: |x| + |y| + |z| is its
+/// A normal that samples from a mixture, on a face of the octahedron that the bins divide: |x| + |y| + |z| is its
 /// number of subdivisions.
 struct MixedNormal {
     Direction place{};
@@ -107,7 +107,7 @@ float as_part(double value) {
     return value > 0.0 ? std::max(static_cast<float>(value), std::numeric_limits<float>::min()) : 0.0f;
 }
 
-/// What bright tiles draw from a place on a face.
+/// What bright tiles sample from a place on a face.
 double light_weights(const std::vector<AcdfBrightTile>& bright_tiles, const Direction& place, double length) {
     AcdfLocalPoint point = {};
     std::copy(place.begin(), place.end(), point.normal);
@@ -177,9 +177,9 @@ private:
             for (std::size_t t = 0; t < row.size(); ++t) s.mixed[t] += normal.weight[i] * double{row[t]};
             if (normal.bin[i] == bin) own_weight = normal.weight[i];
         }
-        // Of bright tiles, what they draw is what they should.
-        const double drawn = light_weights(bright_tiles_, normal.place, length);
-        double irradiance = drawn, moments = drawn, sum = drawn, vain = 0.0;
+        // Of bright tiles, what they sample is what they should.
+        const double sampled = light_weights(bright_tiles_, normal.place, length);
+        double irradiance = sampled, moments = sampled, sum = sampled, vain = 0.0;
         for (std::size_t t = 0; t < s.mixed.size(); ++t) {
             if (!(s.mixed[t] > 0.0)) continue;
             const double cost = length * view.cost[t];

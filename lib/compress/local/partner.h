@@ -1,4 +1,4 @@
-// Rows of a local environment map that is made for an MIS partner: what each normal draws beside it.
+// Rows of a local environment map that is made for an MIS partner: what each normal samples beside it.
 #pragma once
 
 #include "compress/partner.h"

@@ -1,4 +1,4 @@
-// How much light from one direction wants to be drawn beside an MIS partner, where it shines on several normals.
+// How much light from one direction wants to be sampled beside an MIS partner, where it shines on several normals.
 #pragma once
 
 #include "compress/partner.h"
@@ -8,7 +8,7 @@
 
 namespace acdf::compress {
 
-/// What light of radiance L from one direction adds to the sum of the noise of all normals, if it is drawn with
+/// What light of radiance L from one direction adds to the sum of the noise of all normals, if it is sampled with
 /// n_b / n_l times the density y: L^2 square(y) + L mean(y). At nodes, with how fast either falls there.
 struct NoiseCurve {
     static constexpr std::size_t nodes = 24;
@@ -25,7 +25,7 @@ public:
     Demand(const NoiseCurve& curve, double radiance);
 
     double at(double price) const;
-    /// The price from which on anything is drawn; 0: at no price.
+    /// The price from which on anything is sampled; 0: at no price.
     double highest() const { return count_ > 0 ? points_.front().price : 0.0; }
     /// The line light / sqrt(price) - partner that y follows about there, for a price that is positive. Both are 0
     /// where light is not worth any; where its price is too high the line is at most 0.

@@ -47,7 +47,7 @@ public:
 private:
     struct Point {
         Direction direction;
-        double radiance, measure, density = 0.0; ///< of what is drawn
+        double radiance, measure, density = 0.0; ///< of what is sampled
         std::size_t place;                       ///< in the coarse grid
     };
 
@@ -127,7 +127,7 @@ private:
         });
     }
 
-    /// Draws all that is worth the price at which the samples are as many as there are.
+    /// Samples all that is worth the price at which the samples are as many as there are.
     void fill() {
         std::vector<Demand> demands;
         for (const Point& p : points_) demands.emplace_back(curves_[p.place], p.radiance);

@@ -17,17 +17,17 @@ double cost_of(const VisibilitySums& sums, const std::vector<float>& prior, std:
     const std::size_t count = prior.size();
     const float *const all = sums.all.data(), *const seen = sums.seen.data(), *const before = prior.data();
     work.resize(2 * count);
-    float *const arrives = work.data(), *const drawn = arrives + count;
+    float *const arrives = work.data(), *const sampled = arrives + count;
     const float points = sums.points;
     for (std::size_t p = 0; p < count; ++p) {
         const float factor = visible_factor(all[p], seen[p], points, before[p], {});
         arrives[p] = seen[p] / factor;
-        drawn[p] = all[p] * factor;
+        sampled[p] = all[p] * factor;
     }
     double moment = 0.0, weight = 0.0;
     for (std::size_t p = 0; p < count; ++p) {
         moment += double{arrives[p]};
-        weight += double{drawn[p]};
+        weight += double{sampled[p]};
     }
     return std::sqrt(moment * weight);
 }

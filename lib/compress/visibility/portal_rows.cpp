@@ -10,9 +10,9 @@ namespace acdf::compress {
 namespace {
 
 constexpr std::uint32_t kMostPieces = ACDF_MAX_PORTAL_PIECES * ACDF_MAX_PORTAL_PIECES;
-/// Rays of a point to all that the row draws, to find what comes in by other ways.
+/// Rays of a point to all that the row samples, to find what comes in by other ways.
 constexpr std::uint32_t kRays = 16;
-/// How much is believed of what few points tell, and the least and the most of the samples that rows draw: light
+/// How much is believed of what few points tell, and the least and the most of the samples that rows sample: light
 /// may come where no ray found any, and through a portal that no ray came through.
 constexpr VisibilityCaution kCaution{0.02f, 1.0f};
 constexpr double kLeastOfRow = 0.02, kMostOfRow = 0.9;
@@ -122,7 +122,7 @@ struct CellSums {
     double other = 0.0;
 };
 
-/// How much of the samples rows draw best: second moments of what they and visible_portals draw are balanced.
+/// How much of the samples rows sample best: second moments of what they and visible_portals sample are balanced.
 double share_of_row(double other, double through) {
     if (!(other + through > 0.0)) return 0.5; // nothing is known
     const double root = std::sqrt(other / (other + through));

@@ -94,16 +94,16 @@ double moment_of_others(const Region& region, const VisibilityLight& light, cons
         const std::vector<float>& prior = region.priors[share.cell];
         const float* given = light.of(share.point);
         const float others = std::max(cell.points - share.weight, 1e-6f);
-        double arrives = 0.0, drawn = 0.0;
+        double arrives = 0.0, sampled = 0.0;
         for (std::size_t p = 0; p < light.parts; ++p) {
             const float all = std::fabs(given[p]), seen = std::max(given[p], 0.0f);
             const float factor =
                 visible_factor(std::max(cell.all[p] - share.weight * all, 0.0f),
                              std::max(cell.seen[p] - share.weight * seen, 0.0f), others, prior[p], caution);
             arrives += double{seen / factor};
-            drawn += double{all * factor};
+            sampled += double{all * factor};
         }
-        moment += double{share.weight} * arrives * drawn;
+        moment += double{share.weight} * arrives * sampled;
     }
     return moment;
 }

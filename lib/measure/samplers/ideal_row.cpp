@@ -20,7 +20,7 @@ IdealRows::IdealRows(const compress::Target& target, double shares)
     }
 }
 
-/// What is drawn of a texel of radiance L: L - threshold, times the cosine.
+/// What is sampled of a texel of radiance L: L - threshold, times the cosine.
 double IdealRow::taken(const Texel& texel, double threshold) const {
     const double excess = static_cast<double>(rows_.radiance_[texel.index]) - threshold;
     return excess > 0.0 ? excess * texel.cosine * rows_.measure_[texel.index / rows_.grid_.columns()] : 0.0;

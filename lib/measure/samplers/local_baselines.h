@@ -3,7 +3,7 @@
 //
 // In all of them the target is a probe, lat-long or octahedral, with one channel and nearest lookup (g is f:
 // compress::Target); it is referred to, not copied, and must outlive the sampler. Normals are unit. Directions are
-// drawn over whole texels; relative variances take each texel's cosine at its centre (TexelCosines), and are 0
+// sampled over whole texels; relative variances take each texel's cosine at its centre (TexelCosines), and are 0
 // where E(n) is.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace acdf::measure {
 
-/// The full-resolution CDF of L: samples below the horizon are drawn in vain.
+/// The full-resolution CDF of L: samples below the horizon are sampled in vain.
 class LocalFullCdf {
 public:
     /// Throws std::invalid_argument where the target is no such probe or black.

@@ -1,4 +1,4 @@
-// What one can do today to draw from light times cosine times BRDF: the baselines of product_samplers.h.
+// What one can do today to sample from light times cosine times BRDF: the baselines of product_samplers.h.
 #pragma once
 
 #include "compress/target.h"

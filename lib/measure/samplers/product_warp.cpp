@@ -60,7 +60,7 @@ private:
     double corner_[2][2] = {{1.0, 1.0}, {1.0, 1.0}};
 };
 
-/// A file of light at one point: what is drawn for a pair of numbers, and the numbers that draw a direction.
+/// A file of light at one point: what is sampled for a pair of numbers, and the numbers that sample a direction.
 class LightAtPoint {
 public:
     explicit LightAtPoint(const File& file) : local_(), is_local_(file.kind() == ACDF_KIND_LOCAL) {

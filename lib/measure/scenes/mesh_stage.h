@@ -36,7 +36,7 @@ private:
 /// decide.
 struct StageVariances {
     std::vector<std::vector<double>> of_points; ///< samplers x points with light
-    std::vector<std::uint64_t> lost;            ///< one a sampler: texels with light that are never drawn
+    std::vector<std::uint64_t> lost;            ///< one a sampler: texels with light that are never sampled
 };
 
 /// By summation over texels (PointSums). Uses all cores; the result does not depend on their number. `progress`, if

@@ -136,9 +136,9 @@ def build_local(
     subdivisions, tiles: how many bins of normals (4 n^2 + 2) and shared tiles; None: as suits the size.
     normals, normal_weights: only what a scene has, of shape (n, 3), and how often each occurs; None: all normals.
     max_weight: of the samples of all normals that accuracy is measured for.
-    cosine_share: of samples that are drawn around the normal instead, in [0, 0.99].
+    cosine_share: of samples that are taken around the normal instead, in [0, 0.99].
     sharing: bins share tiles; else each has a tree of its own.
-    shape: "small", the least noise for its bytes, or "fast", a draw from which takes two thirds of the time and a density half.
+    shape: "small", the least noise for its bytes, or "fast", a sample from which takes two thirds of the time and a density half.
         Fast files share tiles, and have neither max_weight nor an MIS partner. "auto" makes both, and chooses fast where it has no
         more noise after the same time.
     """

@@ -111,7 +111,7 @@ ACDF_FN void acdf_brdf_view_pdfs(const AcdfBrdf* brdf, const AcdfBrdfView* view,
     }
 }
 
-/* Density per steradian with which acdf_brdf_sample draws wi for wo. 0 where none falls, for wo below the surface
+/* Density per steradian with which acdf_brdf_sample samples wi for wo. 0 where none falls, for wo below the surface
  * and for directions that are NaN or not of unit length. */
 ACDF_FN float acdf_brdf_pdf(const AcdfBrdf* brdf, const float wo[3], const float wi[3]) {
     AcdfBrdfView view;
@@ -176,7 +176,7 @@ ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfVi
         return out;
     }
     /* Near the border rounding wi to float may carry it over: then it moves towards the middle, so that pdf() finds
-     * the cell that it was drawn in. */
+     * the cell that it was sampled in. */
     for (attempt = 0; attempt < 32; ++attempt) {
         double side;
         for (axis = 0; axis < 2; ++axis) {
@@ -233,7 +233,7 @@ ACDF_FN void acdf_brdf_view_samples(const AcdfBrdf* brdf, const AcdfBrdfView* vi
     for (i = 0; i < count; ++i) out[i] = acdf_brdf_view_sample(brdf, view, u[i][0], u[i][1]);
 }
 
-/* A direction about as acdf_brdf_view_sample draws it, to look where much is reflected; pdf 0: none. */
+/* A direction about as acdf_brdf_view_sample samples it, to look where much is reflected; pdf 0: none. */
 ACDF_FN AcdfDirectionSample acdf_brdf_view_about(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0,
                                                  double u1) {
 #ifdef ACDF_BRDF_GUESSES
@@ -251,7 +251,7 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_brdf_walk(const AcdfBrdf* brdf, con
     return acdf_brdf_view(brdf, wo, &view) ? acdf_brdf_view_walk(brdf, &view, u0, u1) : nothing;
 }
 
-/* Draws wi for wo; u0 (phi_h) and u1 (theta_h) in [0, 1]; values outside are clamped, NaN counts as 0. Monotone in
+/* Samples wi for wo; u0 (phi_h) and u1 (theta_h) in [0, 1]; values outside are clamped, NaN counts as 0. Monotone in
  * each of them within a cell. pdf 0 (and no direction) for wo that are not unit vectors above the surface. */
 ACDF_FN AcdfDirectionSample acdf_brdf_sample(const AcdfBrdf* brdf, const float wo[3], double u0, double u1) {
 #ifdef ACDF_BRDF_GUESSES
@@ -313,7 +313,7 @@ ACDF_FN int acdf_brdf_stays(const AcdfBrdf* brdf, const AcdfBrdfView* view, cons
  * for rounding: a coordinate is off by 2^-23 at most, and for wi nearer to a border of the cell than samples come
  * by 2^-19 / |wo + wi| + 2^-29 / sin(theta_h), in cells that are wider. Samples that rounding would carry over a
  * border are moved into their cell, by an eighth of it or more: of those other numbers come back than they were
- * drawn by, which draw them as well. */
+ * sampled by, which sample them as well. */
 ACDF_FN int acdf_brdf_invert(const AcdfBrdf* brdf, const float wo[3], const float wi[3], double u[2]) {
     const double floor = (double)brdf->views->diffuse_share;
     AcdfBrdfView view;

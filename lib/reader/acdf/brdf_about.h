@@ -25,7 +25,7 @@ typedef struct AcdfBrdfAbout {
 ACDF_INLINE void acdf_about_halves(const AcdfBrdfView* view, const float (*wi)[3], uint32_t count,
                                    AcdfBrdfAbout* a) {
     const float wo[3] = {(float)view->wo[0], (float)view->wo[1], (float)view->wo[2]};
-    const uint32_t all = (count + 3u) & ~3u; /* roots are drawn four at a time */
+    const uint32_t all = (count + 3u) & ~3u; /* roots are sampled four at a time */
     uint32_t i;
     int k;
     for (i = 0; i < count; ++i)

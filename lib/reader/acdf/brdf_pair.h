@@ -1,11 +1,11 @@
-/* Draws and densities of a BRDF file by its runtime tables (acdf/brdf_tables.h): those of the walk, bit for bit. */
+/* Samples and pdfs of a BRDF file by its runtime tables (acdf/brdf_tables.h): those of the walk, bit for bit. */
 #ifndef ACDF_BRDF_PAIR_H
 #define ACDF_BRDF_PAIR_H
 
 #include <acdf/brdf_half.h>
 
 #ifdef ACDF_SSE2
-#define ACDF_BRDF_GUESSES 1 /* draws take tables; without vectors of two the walk is as fast */
+#define ACDF_BRDF_GUESSES 1 /* samples take tables; without vectors of two the walk is as fast */
 #endif
 
 #ifdef __cplusplus
@@ -141,12 +141,12 @@ ACDF_OUTLINE uint32_t acdf_brdf_pair_walk(const AcdfBrdf* brdf, const uint8_t* r
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* Draws a cell of a mixture of the two rows around a view, as acdf_blend_sample does: the walk goes where a guess
+/* Samples a cell of a mixture of the two rows around a view, as acdf_blend_sample does: the walk goes where a guess
  * says, so that nothing waits for a comparison. Where one disagrees, the walk goes the other way, and then where
- * the cell across that side is. Returns the cell's probability; 0 where there is nothing to draw, and where all
+ * the cell across that side is. Returns the cell's probability; 0 where there is nothing to sample, and where all
  * that is left of the weight is below the random numbers. */
 ACDF_INLINE double acdf_brdf_pair_sample_cell(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double u[2],
-                                       __m128d* left, const AcdfBrdfPath** drawn) {
+                                       __m128d* left, const AcdfBrdfPath** sampled) {
     const AcdfBrdfTables* tables = brdf->tables;
     const double* codes = (const double*)acdf_brdf_words(tables, tables->codes);
     const AcdfBrdfPath* paths = (const AcdfBrdfPath*)acdf_brdf_words(tables, tables->paths);
@@ -160,7 +160,7 @@ ACDF_INLINE double acdf_brdf_pair_sample_cell(const AcdfBrdf* brdf, const AcdfBr
     size_t i, depth = 0;
     AcdfPairWalk walk;
     __m128d share;
-    for (i = 0; i < 4; ++i) ACDF_PREFETCH(&paths[path->beyond[i]]); /* six of ten draws go there */
+    for (i = 0; i < 4; ++i) ACDF_PREFETCH(&paths[path->beyond[i]]); /* six of ten samples go there */
     parts[0] = parts[2] = codes;
     parts[1] = parts[3] = codes + 256;
     walk.weight = weight;
@@ -190,7 +190,7 @@ ACDF_INLINE double acdf_brdf_pair_sample_cell(const AcdfBrdf* brdf, const AcdfBr
         path = &paths[acdf_brdf_pair_walk(brdf, row0, row1, splits[path->splits[depth - 1]].child[upper], &rest)];
         walk = rest;
     }
-    *drawn = path;
+    *sampled = path;
     if (!(_mm_cvtsd_f64(walk.chosen) > 0.0)) return 0.0;
     *left = _mm_div_pd(walk.x, walk.chosen);
     share = _mm_mul_pd(weight, walk.part);
@@ -202,7 +202,7 @@ ACDF_INLINE __m128d acdf_pair_doubles(const int32_t of[2]) {
     return _mm_cvtepi32_pd(_mm_loadl_epi64((const __m128i*)(const void*)of));
 }
 
-/* acdf_brdf_view_sample, of tables that have guesses. Returns 0 where there is nothing to draw, and where rounding
+/* acdf_brdf_view_sample, of tables that have guesses. Returns 0 where there is nothing to sample, and where rounding
  * wi may carry it over the border of its cell: then the walk is to be asked. */
 ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0, double u1,
                                       AcdfDirectionSample* out) {
@@ -234,7 +234,7 @@ ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* 
     return 1;
 }
 
-/* About what acdf_brdf_pair_sample draws, for a third of its time: the middle of the cell that is guessed, and the
+/* About what acdf_brdf_pair_sample samples, for a third of its time: the middle of the cell that is guessed, and the
  * density there. Returns 0 where there is none. */
 ACDF_INLINE int acdf_brdf_pair_about(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0, double u1,
                                      AcdfDirectionSample* out) {

@@ -17,9 +17,9 @@ extern "C" {
 
 enum { ACDF_CUT_MAX_PARTS = 96, ACDF_CUT_BLOCKS = ACDF_CUT_MAX_PARTS / ACDF_BLOCK_CELLS, ACDF_CUT_MAX_BRIGHT_TILES = 64 };
 
-/* A box: what lies below a split or in a tile. What draws and densities read stands first. */
+/* A box: what lies below a split or in a tile. What samples and densities read stands first. */
 typedef struct AcdfCutPart {
-    double numbers[2][2];               /* random numbers that draw it: from low to high of axis 0, of axis 1 */
+    double numbers[2][2];               /* random numbers that sample it: from low to high of axis 0, of axis 1 */
     double weight[ACDF_MAX_ROWS_MIXED]; /* what each row gives to it */
     double bright_tiles;                      /* weights of the bright tiles in it */
     double sum;                         /* of all weights */
@@ -39,7 +39,7 @@ typedef struct AcdfCutSplit {
 } AcdfCutSplit;
 
 typedef struct AcdfCut {
-    int count;   /* of parts; 0: there is nothing to draw */
+    int count;   /* of parts; 0: there is nothing to sample */
     int nearest; /* which of the rows weighs most */
     AcdfCutPart part[ACDF_CUT_MAX_PARTS];
     AcdfCutSplit split[ACDF_CUT_MAX_PARTS - 1];

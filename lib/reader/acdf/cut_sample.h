@@ -1,4 +1,4 @@
-/* Drawing from a cut, and its density (acdf/cut.h). One freestanding header, valid C99, C++17 and CUDA/HIP/SYCL. */
+/* Sampling from a cut, and its density (acdf/cut.h). One freestanding header, valid C99, C++17 and CUDA/HIP/SYCL. */
 #ifndef ACDF_CUT_SAMPLE_H
 #define ACDF_CUT_SAMPLE_H
 
@@ -14,7 +14,7 @@ ACDF_INLINE uint32_t acdf_cut_side(double number) {
     return (uint32_t)(scaled < 0xFF ? scaled : 0xFF) ^ 0x80u;
 }
 
-/* Tells each part which random numbers draw it: those of a split are shared by its children; share[~i] is that of
+/* Tells each part which random numbers sample it: those of a split are shared by its children; share[~i] is that of
  * part i, share[i] of split i. */
 ACDF_FN void acdf_cut_borders(AcdfCut* cut, const double* share) {
     /* Of splits and parts, as shares are: low and high on axis 0, on axis 1. Each in an array of its own: what is
@@ -61,7 +61,7 @@ ACDF_FN void acdf_cut_borders(AcdfCut* cut, const double* share) {
     }
 }
 
-/* Makes the cut ready to be drawn from: to be called when all parts have their probabilities, which need not add up
+/* Makes the cut ready to be sampled from: to be called when all parts have their probabilities, which need not add up
  * to 1. Parts without light get none. Where nothing is left the cut is emptied. */
 ACDF_FN void acdf_cut_finish(AcdfCut* cut) {
     /* Of parts and splits, so that a child's number finds its own without a branch that nobody guesses: part ~n
@@ -112,7 +112,7 @@ ACDF_INLINE double acdf_cut_of_all(const AcdfMixture* mix, const double* u, doub
     return whole;
 }
 
-/* Draws a tile of a part from its mixture; *inside becomes its share of that. */
+/* Samples a tile of a part from its mixture; *inside becomes its share of that. */
 ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part,
                                       const AcdfMixture* mix, double* u, AcdfRange* range, double* inside) {
     if (acdf_local_tabled(local, point)) {
@@ -152,13 +152,13 @@ ACDF_INLINE double acdf_cut_number(double u) {
     return x < most ? x : most;
 }
 
-/* Whether numbers in [0, 1) draw a part. */
+/* Whether numbers in [0, 1) sample a part. */
 ACDF_INLINE int acdf_cut_samples(const AcdfCutPart* part, const double u[2]) {
     return (part->numbers[0][0] <= u[0]) & (u[0] < part->numbers[0][1]) & (part->numbers[1][0] <= u[1]) &
            (u[1] < part->numbers[1][1]);
 }
 
-/* The parts of a block that numbers in steps of 1/256 may draw. */
+/* The parts of a block that numbers in steps of 1/256 may sample. */
 ACDF_INLINE uint32_t acdf_cut_candidates(const AcdfCut* cut, int block, const uint32_t step[2]) {
 #ifdef ACDF_SSE2
     const __m128i* box = (const __m128i*)(const void*)cut->boxes[block];
@@ -169,7 +169,7 @@ ACDF_INLINE uint32_t acdf_cut_candidates(const AcdfCut* cut, int block, const ui
 #endif
 }
 
-/* The first part from a number on that numbers in [0, 1) may draw, the last part if there is no other. No branch
+/* The first part from a number on that numbers in [0, 1) may sample, the last part if there is no other. No branch
  * depends on which. */
 ACDF_INLINE int acdf_cut_guess(const AcdfCut* cut, const double u[2], int from) {
     const uint32_t step[2] = {(uint32_t)(int32_t)(u[0] * 256.0), (uint32_t)(int32_t)(u[1] * 256.0)};
@@ -190,7 +190,7 @@ ACDF_INLINE int acdf_cut_guess(const AcdfCut* cut, const double u[2], int from) 
     return cut->count - 1;
 }
 
-/* Draws a part by numbers in [0, 1), where all before number `guess` are known not to be drawn: u becomes what is
+/* Samples a part by numbers in [0, 1), where all before number `guess` are known not to be sampled: u becomes what is
  * left of the random numbers. */
 ACDF_INLINE const AcdfCutPart* acdf_cut_sample_guessed(const AcdfCut* cut, int guess, double u[2]) {
     const AcdfCutPart* part = &cut->part[guess];
@@ -204,25 +204,25 @@ ACDF_INLINE const AcdfCutPart* acdf_cut_sample_guessed(const AcdfCut* cut, int g
     return part;
 }
 
-/* Asks for what draws from a part read of it, and of rows where they begin in it. */
+/* Asks for what samples from a part read of it, and of rows where they begin in it. */
 ACDF_INLINE void acdf_cut_part_ahead(const AcdfCut* cut, int number) {
     ACDF_PREFETCH(&cut->part[number].numbers[0][0]);
     ACDF_PREFETCH(&cut->part[number].depth);
 }
 
-/* Draws a part. */
+/* Samples a part. */
 ACDF_FN const AcdfCutPart* acdf_cut_choose_part(const AcdfCut* cut, double u[2]) {
     const int number = acdf_cut_guess(cut, u, 0);
     acdf_cut_part_ahead(cut, number);
     return acdf_cut_sample_guessed(cut, number, u);
 }
 
-/* Whether u0 in [0, 1] draws a light of a part, not from its mixture. */
+/* Whether u0 in [0, 1] samples a light of a part, not from its mixture. */
 ACDF_INLINE int acdf_cut_samples_bright_tile(const AcdfCutPart* part, double u0) {
     return (part->bright_tiles > 0.0) & ((u0 * part->sum < part->bright_tiles) | !(part->sum > part->bright_tiles));
 }
 
-/* Draws that light; u[0] becomes what is left of it, *probability that of the light. Returns its tile. */
+/* Samples that light; u[0] becomes what is left of it, *probability that of the light. Returns its tile. */
 ACDF_FN uint32_t acdf_cut_sample_bright_tile(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part, double* u,
                                      AcdfRange* range, double* probability) {
     uint32_t k = part->first_light, chosen = part->end_light;
@@ -243,7 +243,7 @@ ACDF_FN uint32_t acdf_cut_sample_bright_tile(const AcdfLocal* local, const AcdfC
     return local->bright_tiles[chosen].tile;
 }
 
-/* u0 as a number of the part's mixture alone, where it draws from that. */
+/* u0 as a number of the part's mixture alone, where it samples from that. */
 ACDF_INLINE double acdf_cut_number_of_mixture(const AcdfCutPart* part, double u0) {
     return acdf_unit_interval((u0 * part->sum - part->bright_tiles) / (part->sum - part->bright_tiles));
 }
@@ -253,7 +253,7 @@ ACDF_INLINE double acdf_cut_tile_probability(const AcdfCutPart* part, const Acdf
     return acdf_positive(part->probability * (acdf_mixture_sum(mix) / part->sum * inside));
 }
 
-/* Draws a cell of a part; u and range as in acdf_tree_sample. Returns its probability, > 0. */
+/* Samples a cell of a part; u and range as in acdf_tree_sample. Returns its probability, > 0. */
 ACDF_FN double acdf_cut_sample_part(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                     const AcdfCutPart* part, double* u, AcdfRange* range) {
     double probability;
@@ -291,7 +291,7 @@ ACDF_FN const AcdfCutPart* acdf_cut_find(const AcdfCut* cut, const uint32_t* squ
     return &cut->part[~child];
 }
 
-/* Density per steradian with which acdf_cut_sample draws `direction` (unit); of cuts that are finished. */
+/* Density per steradian with which acdf_cut_sample samples `direction` (unit); of cuts that are finished. */
 ACDF_CALLED float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -321,7 +321,7 @@ ACDF_INLINE AcdfDirectionSample acdf_cut_direction_sample(const AcdfLocal* local
     return out;
 }
 
-/* Draws a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
+/* Samples a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
  * no direction) where the cut is empty. */
 ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                 const AcdfCut* cut, double u0, double u1) {

@@ -1,4 +1,4 @@
-/* Several draws from a cut side by side (acdf/cut_sample.h): what one of them waits for, memory and the splits and
+/* Several samples from a cut side by side (acdf/cut_sample.h): what one of them waits for, memory and the splits and
  * curves on its way, the others use. Each is acdf_cut_sample's to the bit. One freestanding header, valid C99,
  * C++17 and CUDA/HIP/SYCL; in kernels it makes single calls. */
 #ifndef ACDF_CUT_WAVE_H
@@ -32,7 +32,7 @@ ACDF_INLINE int acdf_cut_by_vectors(const AcdfLocal* local, const AcdfLocalPoint
            local->blend.tiles->tile_count > 1;
 }
 
-/* A draw on its way. */
+/* A sample on its way. */
 typedef struct AcdfCutLane {
     double u[2];
     AcdfRange range[2];
@@ -49,7 +49,7 @@ typedef struct AcdfCutLanes {
     uint32_t lane[ACDF_CUT_WAVE];
 } AcdfCutLanes;
 
-/* Draws parts. */
+/* Samples parts. */
 ACDF_INLINE void acdf_cut_wave_parts(const AcdfCut* cut, const double (*u)[2], uint32_t count, AcdfCutLane* lane) {
     int guess[ACDF_CUT_WAVE];
     uint32_t i;
@@ -62,7 +62,7 @@ ACDF_INLINE void acdf_cut_wave_parts(const AcdfCut* cut, const double (*u)[2], u
     for (i = 0; i < count; ++i) lane[i].part = acdf_cut_sample_guessed(cut, guess[i], lane[i].u);
 }
 
-/* Draws bright tiles, and tells which lanes draw from the mixture of their part. */
+/* Samples bright tiles, and tells which lanes sample from the mixture of their part. */
 ACDF_INLINE void acdf_cut_wave_lights(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                       uint32_t count, AcdfCutLane* lane, AcdfCutLanes* mixed) {
     uint32_t i, k;
@@ -91,7 +91,7 @@ ACDF_INLINE AcdfMixture acdf_cut_wave_mixture(const AcdfCutPart* part) {
     return mix;
 }
 
-/* Draws tiles of mixtures. */
+/* Samples tiles of mixtures. */
 ACDF_INLINE void acdf_cut_wave_tiles(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutLanes* mixed,
                                      AcdfCutLane* lane) {
     const uint32_t* words = acdf_local_words(local->tables);
@@ -144,7 +144,7 @@ ACDF_INLINE void acdf_cut_wave_tiles(const AcdfLocal* local, const AcdfLocalPoin
     }
 }
 
-/* Follows curves of tiles: to the cells that hold squares, or where there are none, to those that the lanes draw.
+/* Follows curves of tiles: to the cells that hold squares, or where there are none, to those that the lanes sample.
  */
 ACDF_INLINE void acdf_cut_wave_curves(const AcdfLocal* local, uint32_t count, const uint32_t (*square)[2],
                                       AcdfCutLane* lane) {

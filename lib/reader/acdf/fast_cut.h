@@ -3,7 +3,7 @@
  * (acdf/product.h). One freestanding header over acdf/local.h, valid C99, C++17 and CUDA/HIP/SYCL.
  *
  * In groups that are not open, tiles get what the rows give to them, and in tiles cells what the file does: light
- * times cosine. Probabilities of bright tiles, groups and tiles are integers, as those of rows are: draws and densities
+ * times cosine. Probabilities of bright tiles, groups and tiles are integers, as those of rows are: samples and densities
  * agree to the last bit. */
 #ifndef ACDF_FAST_CUT_H
 #define ACDF_FAST_CUT_H
@@ -26,7 +26,7 @@ enum {
 
 /* Lights, at least one part that is none up to a multiple of sixteen, and groups are parts. */
 typedef struct AcdfFastCut {
-    int32_t whole;                      /* the last end; 0: there is nothing to draw */
+    int32_t whole;                      /* the last end; 0: there is nothing to sample */
     uint32_t bright_tiles;                    /* how many parts are bright tiles: a multiple of 16 */
     uint32_t count;                     /* of parts; a multiple of 16 */
     int32_t upper[ACDF_FAST_CUT_UPPER]; /* every sixteenth end, and all ones behind them */
@@ -129,7 +129,7 @@ ACDF_FN void acdf_fast_cut_finish(AcdfFastCut* cut, const float* share) {
     cut->whole = cut->end[cut->count - 1];
 }
 
-/* ---- draws and densities ---------------------------------------------------------------------------- */
+/* ---- samples and densities ---------------------------------------------------------------------------- */
 
 /* The first of sixteen ends that is above x, which is below the last one. */
 ACDF_INLINE uint32_t acdf_fast_cut_search(const int32_t* end, double x) {
@@ -160,7 +160,7 @@ ACDF_INLINE AcdfFastPart acdf_fast_cut_part(const int32_t* end, uint32_t i) {
     return out;
 }
 
-/* Draws a tile of a group; *share, which is the group's, becomes the tile's. */
+/* Samples a tile of a group; *share, which is the group's, becomes the tile's. */
 ACDF_INLINE uint32_t acdf_fast_cut_sample_tile(const AcdfLocalPoint* point, const AcdfFastCut* cut, uint32_t number,
                                              double* u, AcdfFastShare* share) {
     const uint32_t first = ACDF_FAST_GROUP * number, list = cut->open[number];
@@ -215,7 +215,7 @@ ACDF_INLINE AcdfFastShare acdf_fast_cut_find(const AcdfLocalPoint* point, const 
     return share;
 }
 
-/* Draws a tile by two numbers; `left` becomes what is left of them, *share that of acdf_fast_cut_find. */
+/* Samples a tile by two numbers; `left` becomes what is left of them, *share that of acdf_fast_cut_find. */
 ACDF_INLINE uint32_t acdf_fast_cut_choose_part(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
                                         const double u[2], double left[2], AcdfFastShare* share) {
     const double x = acdf_fast_scaled(acdf_unit_interval(u[0]), (double)cut->whole);
@@ -233,7 +233,7 @@ ACDF_INLINE uint32_t acdf_fast_cut_choose_part(const AcdfLocal* local, const Acd
     return acdf_fast_cut_sample_tile(point, cut, number - cut->bright_tiles, left, share);
 }
 
-/* Density per steradian with which acdf_fast_cut_sample draws `direction` (unit). */
+/* Density per steradian with which acdf_fast_cut_sample samples `direction` (unit). */
 ACDF_CALLED float acdf_fast_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
                                     const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -250,7 +250,7 @@ ACDF_CALLED float acdf_fast_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint
     return acdf_local_fast_cell_pdf(local, &grid, range, &share);
 }
 
-/* Draws a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
+/* Samples a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
  * no direction) where the cut is empty. */
 ACDF_CALLED AcdfDirectionSample acdf_fast_cut_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                      const AcdfFastCut* cut, double u0, double u1) {

@@ -1,5 +1,5 @@
 /* Tiles of the fast shape by rows that a point mixes (acdf/fast.h): what each tile gets, and which one a number
- * draws. By vectors of SSE2, whose results do not pass through memory in pieces, and without: the same integers. */
+ * samples. By vectors of SSE2, whose results do not pass through memory in pieces, and without: the same integers. */
 #ifndef ACDF_FAST_ROWS_H
 #define ACDF_FAST_ROWS_H
 
@@ -280,7 +280,7 @@ ACDF_INLINE AcdfFastShare acdf_fast_share(const AcdfFastMixture* mix, uint32_t t
     return out;
 }
 
-/* Draws a tile by x, below 32767 times the whole of the mixture, and u[1] in [0, 1]; u becomes what is left of the
+/* Samples a tile by x, below 32767 times the whole of the mixture, and u[1] in [0, 1]; u becomes what is left of the
  * random numbers. *share becomes that of acdf_fast_share. */
 ACDF_INLINE uint32_t acdf_fast_sample_tile(const AcdfFast* fast, const AcdfFastMixture* mix, double x, double* u,
                                          AcdfFastShare* share) {

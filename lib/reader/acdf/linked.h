@@ -1,4 +1,4 @@
-/* Draws and densities as symbols of the library, singly and in arrays: for what cannot compile the inline functions
+/* Samples and pdfs as symbols of the library, singly and in arrays: for what cannot compile the inline functions
  * of acdf/sample.h, local.h, brdf.h and table.h, such as Python, Rust, Julia or C#. All arguments are numbers and
  * pointers to them. Each gives what the inline function gives, bit for bit, where that is compiled with
  * -ffp-contract=off as the library is (else directions may differ in the last bit on processors that fuse products
@@ -25,7 +25,7 @@ typedef struct AcdfError AcdfError;
 
 /* ---- environments ---- */
 
-/* Draws a direction; returns its density, > 0. */
+/* Samples a direction; returns its density, > 0. */
 float acdf_sample_environment(const AcdfFile* file, double u0, double u1, float direction[3]);
 /* Density of a direction; 0 where none falls, for NaN and for directions that are not of unit length. */
 float acdf_pdf_environment(const AcdfFile* file, const float direction[3]);
@@ -33,7 +33,7 @@ float acdf_pdf_environment(const AcdfFile* file, const float direction[3]);
 int acdf_sample_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
                                 float* pdfs);
 int acdf_pdf_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs);
-/* The random numbers that draw each direction; NaN where the density is 0. */
+/* The random numbers that sample each direction; NaN where the density is 0. */
 int acdf_invert_environment_array(const AcdfFile* file, const float* directions, size_t count, double* u);
 
 /* ---- local environments ---- */
@@ -42,7 +42,7 @@ int acdf_invert_environment_array(const AcdfFile* file, const float* directions,
 float acdf_sample_local(const AcdfFile* file, const float normal[3], double u0, double u1, float direction[3]);
 float acdf_pdf_local(const AcdfFile* file, const float normal[3], const float direction[3]);
 /* Directions are 0 where their density is. Arrays are served as those of environments are, by waves of normals
- * where `each` is 1, and of draws at one shading point where it is more. */
+ * where `each` is 1, and of samples at one shading point where it is more. */
 int acdf_sample_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
                           float* directions, float* pdfs);
 int acdf_pdf_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
@@ -59,13 +59,13 @@ int acdf_sample_brdf_array(const AcdfFile* file, const float* wo, size_t each, c
                          float* wi, float* pdfs);
 int acdf_pdf_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
                             float* pdfs);
-/* The random numbers that draw each wi; NaN where the table's density is 0. */
+/* The random numbers that sample each wi; NaN where the table's density is 0. */
 int acdf_invert_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
                            double* u);
 /* In [0, 1], about, of `count` views: acdf_brdf_albedo. */
 int acdf_albedo_brdf_array(const AcdfFile* file, const float* wo, size_t count, double* albedos);
 
-/* The same draws and densities by the processor's vector instructions (acdf/wavefront.h), where it has them: a
+/* The same samples and densities by the processor's vector instructions (acdf/wavefront.h), where it has them: a
  * fraction of the time, bit for bit, by tables of some four times the file beside its own. Null where memory fails
  * or the file is of another kind. `error` may be null. Ends with acdf_brdf_waves_close, before its file does. */
 typedef struct AcdfBrdfWaves AcdfBrdfWaves;
@@ -91,7 +91,7 @@ int acdf_sample_table_array(const AcdfFile* file, const uint32_t* index, size_t 
                           double* x, double* pdfs);
 int acdf_pdf_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x,
                              size_t count, double* pdfs);
-/* The random numbers that draw each point; NaN where the density is 0. */
+/* The random numbers that sample each point; NaN where the density is 0. */
 int acdf_invert_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x, size_t count,
                             double* u);
 

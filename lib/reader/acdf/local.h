@@ -49,8 +49,8 @@ ACDF_INLINE uint32_t acdf_local_table_tile(const AcdfLocal* local, const AcdfLoc
     return tile;
 }
 
-/* Draws a cell of a tile of a probability; returns that of the cell. Roots alone are nearer than the tiles'
- * records, which not all draws have asked for. */
+/* Samples a cell of a tile of a probability; returns that of the cell. Roots alone are nearer than the tiles'
+ * records, which not all samples have asked for. */
 ACDF_INLINE double acdf_local_sample_inside(const AcdfLocal* local, uint32_t tile, double probability, double* u,
                                           AcdfRange* range) {
     const uint32_t root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
@@ -59,7 +59,7 @@ ACDF_INLINE double acdf_local_sample_inside(const AcdfLocal* local, uint32_t til
                          acdf_short_tree_sample(local->blend.tree, local->environment.tree_units, root, u, range));
 }
 
-/* Draws a cell of bright tiles and mixture; u and range as in acdf_tree_sample. Returns its probability, > 0. */
+/* Samples a cell of bright tiles and mixture; u and range as in acdf_tree_sample. Returns its probability, > 0. */
 ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                        AcdfRange* range) {
     double probability;
@@ -106,7 +106,7 @@ ACDF_FN void acdf_cosine_direction(const float normal[3], double u0, double u1, 
     for (i = 0; i < 3; ++i) direction[i] = (float)(r * (cosine * s[i] + sine * t[i]) + h * n[i]);
 }
 
-/* Draws by rows, or a tree; u[0] and u[1] in [0, 1]. */
+/* Samples by rows, or a tree; u[0] and u[1] in [0, 1]. */
 ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                       double* u) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -120,7 +120,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     return acdf_local_direction_sample(local, point, &grid, range, u, p);
 }
 
-/* Draws by the row of a place or through its windows, of which there are some. The density is that of the direction
+/* Samples by the row of a place or through its windows, of which there are some. The density is that of the direction
  * as it was rounded. */
 ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_portal_sample(const AcdfLocal* local,
                                                                  const AcdfLocalPoint* point, double* u) {
@@ -167,7 +167,7 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_fast_sample_at(const AcdfLoca
     return acdf_local_only_fast_sample(local, point, 1, u0, u1);
 }
 
-/* Draws a direction; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and no
+/* Samples a direction; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and no
  * direction) where the normal is not valid or nothing shines on it. */
 ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const AcdfLocalPoint* point, double u0,
                                                  double u1) {
@@ -222,7 +222,7 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
                       0x1.fffffffffffffp1023); /* a file may have a total and a share whose product is too large */
 }
 
-/* Which share of the samples to draw from the file at a normal, in (0, 1]; interpolated between bins. */
+/* Which share of the samples to take from the file at a normal, in (0, 1]; interpolated between bins. */
 ACDF_FN float acdf_local_recommended_share(const AcdfLocal* local, const float normal[3]) {
     AcdfNormalBins bins;
     double sum = 0.0, weight = 0.0;

@@ -1,4 +1,4 @@
-/* Draws and densities in local environment maps of the fast shape (acdf/fast.h). Part of acdf/local.h. */
+/* Samples and pdfs in local environment maps of the fast shape (acdf/fast.h). Part of acdf/local.h. */
 #ifndef ACDF_LOCAL_FAST_H
 #define ACDF_LOCAL_FAST_H
 
@@ -22,7 +22,7 @@ ACDF_INLINE AcdfFastGrid acdf_local_fast_record(const AcdfLocal* local, uint32_t
     return out;
 }
 
-/* The grid of a tile that was drawn, and its box. */
+/* The grid of a tile that was sampled, and its box. */
 ACDF_INLINE AcdfFastGrid acdf_local_fast_sampled(const AcdfLocal* local, uint32_t tile, AcdfRange* range) {
     uint32_t node = acdf_blend_root(&local->blend), before = 0;
     if (local->tables) return acdf_local_fast_record(local, tile, range);
@@ -73,13 +73,13 @@ ACDF_INLINE uint32_t acdf_local_lit(const AcdfLocalPoint* point, uint32_t i) {
     return 2u * point->pair[i / 2] + i % 2;
 }
 
-/* A light that is drawn: its number, its weight, and the sum of those before it. */
+/* A light that is sampled: its number, its weight, and the sum of those before it. */
 typedef struct AcdfSampledBrightTile {
     uint32_t number;
     double weight, before;
 } AcdfSampledBrightTile;
 
-/* Of those that a point has weighed the one that x of their sum draws. */
+/* Of those that a point has weighed the one that x of their sum samples. */
 ACDF_INLINE AcdfSampledBrightTile acdf_local_fast_bright_tile(const AcdfLocalPoint* point, double x) {
     uint32_t i = acdf_local_fast_passed(point, x);
     AcdfSampledBrightTile out;
@@ -140,7 +140,7 @@ ACDF_INLINE AcdfSampledBrightTile acdf_local_facet_bright_tile(const AcdfLocal* 
     return out;
 }
 
-/* The light that x of the sum of weights draws at a point, of which none is known but a facet if `weighed` is 0;
+/* The light that x of the sum of weights samples at a point, of which none is known but a facet if `weighed` is 0;
  * what is left of x as a number in [0, 1]. */
 ACDF_INLINE AcdfSampledBrightTile acdf_local_sample_fast_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                       const int weighed, double x, double* u) {
@@ -155,7 +155,7 @@ ACDF_INLINE AcdfSampledBrightTile acdf_local_sample_fast_bright_tile(const AcdfL
     return out;
 }
 
-/* Draws a cell; u and range as in acdf_tree_sample. Returns its probability. `weighed`: whether the point has the
+/* Samples a cell; u and range as in acdf_tree_sample. Returns its probability. `weighed`: whether the point has the
  * weight of each light, or a facet. */
 ACDF_INLINE AcdfFastShare acdf_local_fast_sample_cell(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                const int weighed, double* u, AcdfRange* range) {

@@ -1,4 +1,4 @@
-/* Shading points of files of the fast shape (acdf/fast.h). Part of acdf/local.h. Where `draws` is 0 what only draws
+/* Shading points of files of the fast shape (acdf/fast.h). Part of acdf/local.h. Where `samples` is 0 what only samples
  * need is left open: where rows are searched, and the weight of each light. Points without are of facets. */
 #ifndef ACDF_LOCAL_FAST_POINT_H
 #define ACDF_LOCAL_FAST_POINT_H
@@ -91,7 +91,7 @@ ACDF_INLINE void acdf_local_tabled_bright_tiles(const AcdfLocal* local, AcdfLoca
         _mm_storeu_pd(&out->light[out->lit], both);
         sum = _mm_add_pd(sum, _mm_and_pd(both, _mm_castsi128_pd(is_other)));
         end = _mm_add_pd(_mm_add_pd(both, _mm_unpacklo_pd(zero, both)), end);
-        _mm_storeu_pd(&out->light_end[out->lit], end); /* at once, as draws read them */
+        _mm_storeu_pd(&out->light_end[out->lit], end); /* at once, as samples read them */
         end = _mm_unpackhi_pd(end, end);
         out->pair[out->lit / 2] = (uint8_t)k;
         out->lit += 2;

@@ -116,7 +116,7 @@ ACDF_INLINE float acdf_local_cell_pdf(const AcdfLocal* local, const AcdfGrid* gr
     return acdf_grid_pdf(grid, range, t, p);
 }
 
-/* The density of what rows of codes, or a tree, draw. */
+/* The density of what rows of codes, or a tree, sample. */
 ACDF_FN float acdf_local_spot_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
                                   const AcdfLocalSpot* spot) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -152,7 +152,7 @@ ACDF_INLINE float acdf_local_fast_pdf(const AcdfLocal* local, const AcdfLocalPoi
     return acdf_local_fast_cell_pdf(local, &grid, range, &share);
 }
 
-/* The cell of a grid square that rows, or a tree, draw at a point, which becomes `range`, and its probability: 0
+/* The cell of a grid square that rows, or a tree, sample at a point, which becomes `range`, and its probability: 0
  * where no sample can fall. */
 ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t square[2],
                                     AcdfRange range[2]) {
@@ -226,7 +226,7 @@ ACDF_INLINE int acdf_local_only_fast(const AcdfLocal* local, const AcdfLocalPoin
     return point->what == ACDF_LOCAL_FAST && local->cosine_share == 0.0;
 }
 
-/* Density per steradian with which acdf_local_sample_at draws `direction` (unit). */
+/* Density per steradian with which acdf_local_sample_at samples `direction` (unit). */
 ACDF_FN float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     return acdf_local_only_fast(local, point) ? acdf_local_fast_pdf_at(local, point, direction)
                                               : acdf_local_any_pdf_at(local, point, direction);

@@ -144,12 +144,12 @@ ACDF_FN void acdf_local_at_position(const AcdfLocal* local, const float position
         acdf_visible_portals_at(&local->portals, &local->visibility, &out->visibility, position, out->surface, &out->visible_portals);
 }
 
-/* Whether u0 in [0, 1] draws from the mixture, not a light. */
+/* Whether u0 in [0, 1] samples from the mixture, not a light. */
 ACDF_FN int acdf_local_samples_mixture(const AcdfLocalPoint* point, double u0) {
     return !(u0 * point->sum < point->bright_tiles || point->mix.count == 0);
 }
 
-/* The light that u[0] in [0, 1] draws, null where it draws from the mixture. *weight becomes its own. What is left
+/* The light that u[0] in [0, 1] samples, null where it samples from the mixture. *weight becomes its own. What is left
  * of u[0] takes its mixture. */
 ACDF_FN const AcdfBrightTile* acdf_local_sample_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                                double* weight) {

@@ -1,4 +1,4 @@
-/* Pieces of the sphere, in which directions are drawn and found in floats. One text for processors and for shaders
+/* Pieces of the sphere, in which directions are sampled and found in floats. One text for processors and for shaders
  * of every language (acdf/dialect.h).
  *
  * The sphere is cut into eight pieces along z = 0 and the meridians half-way between the x and the y axes. In each,
@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-/* ---- drawing ---------------------------------------------------------------------------------------- */
+/* ---- sampling ---------------------------------------------------------------------------------------- */
 
 /* The word of a random number in [0, 1] (others are clamped, NaN counts as 0): its first 32 bits. */
 ACDF_FN1(ACDF_U32, acdf_number, ACDF_F32, u) {

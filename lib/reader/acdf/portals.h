@@ -4,9 +4,9 @@
  * All portals that face the same way share a map of the light of their hemisphere. Its axes are tangents along the
  * sides of the portals, bent into a square, so that a portal is an upright rectangle of the map from wherever it is
  * seen: a *visible_portal* (Bitterli, Novak, Jarosz, "Portal-Masked Environment Map Sampling", EGSR 2015). A portal is
- * divided into pieces along its sides. Each is drawn as the light in it, times a cosine to the normal, times how
+ * divided into pieces along its sides. Each is sampled as the light in it, times a cosine to the normal, times how
  * much of it the cells of the mixture see; then, in a piece, the map is followed. A share that the cells tell is
- * drawn by the row of the mixture: it covers all other light, and a scene that has changed.
+ * sampled by the row of the mixture: it covers all other light, and a scene that has changed.
  *
  * The map is bent by t / (1 + |t|), not by the arc tangent of that paper: cells are about as even, and no machine
  * rounds it in another way. */
@@ -42,8 +42,8 @@ typedef struct AcdfVisiblePortal {
 
 typedef struct AcdfVisiblePortals {
     AcdfPortalTable table;
-    int count;     /* 0: only the row is drawn, and the rest is not set */
-    double of_row; /* the share that the row draws, in (0, 1) */
+    int count;     /* 0: only the row is sampled, and the rest is not set */
+    double of_row; /* the share that the row samples, in (0, 1) */
     double weight; /* of all visible_portals, > 0 */
     AcdfVisiblePortal visible_portal[ACDF_MAX_PORTALS];
 } AcdfVisiblePortals;
@@ -248,7 +248,7 @@ ACDF_OUTLINE_ON_CPU float acdf_visible_portals_pdf(const AcdfVisiblePortals* vis
     return acdf_visible_portals_mixed(visible_portals, sum / visible_portals->weight, row);
 }
 
-/* Whether u[0] draws through a visible_portal, not by the row; what is left of it takes its mixture. */
+/* Whether u[0] samples through a visible_portal, not by the row; what is left of it takes its mixture. */
 ACDF_FN int acdf_visible_portals_choose(const AcdfVisiblePortals* visible_portals, double* u) {
     if (u[0] < visible_portals->of_row) {
         u[0] = acdf_unit_interval(u[0] / visible_portals->of_row);
@@ -258,7 +258,7 @@ ACDF_FN int acdf_visible_portals_choose(const AcdfVisiblePortals* visible_portal
     return 1;
 }
 
-/* The one of `count` parts of weights, some > 0, that *u of all draws; what is left of it takes its mixture. */
+/* The one of `count` parts of weights, some > 0, that *u of all samples; what is left of it takes its mixture. */
 ACDF_FN uint32_t acdf_sample_part(const double* weight, uint32_t count, double* u) {
     double x = 0.0;
     uint32_t i, last = 0;
@@ -327,7 +327,7 @@ ACDF_FN double acdf_map_row(const uint32_t* sums, uint32_t size, uint32_t column
 /* How far from a tangent a direction stays, so that rounding does not carry it across. */
 ACDF_FN double acdf_tangent_border(double t) { return 0x1p-22 * (1.0 + t * t); }
 
-/* The tangent of a mixture on an axis of a map that was drawn in a cell, inside of the cell where its borders lie
+/* The tangent of a mixture on an axis of a map that was sampled in a cell, inside of the cell where its borders lie
  * between `low` and `high`. */
 ACDF_FN double acdf_inside_cell(double at, double size, uint32_t cell, double low, double high) {
     const double begin = (double)cell, end = begin + 1.0;
@@ -343,14 +343,14 @@ ACDF_FN double acdf_inside_cell(double at, double size, uint32_t cell, double lo
     return t;
 }
 
-/* A tangent that was drawn between two sides, inside of them. */
+/* A tangent that was sampled between two sides, inside of them. */
 ACDF_FN double acdf_inside_piece(double t, double low, double high) {
     const double border = acdf_tangent_border(fabs(low) > fabs(high) ? low : high);
     if (!(high - low > 2.0 * border)) return 0.5 * (low + high);
     return acdf_clamp(t, low + border, high - border);
 }
 
-/* Draws a direction in a piece of a visible_portal: a column of the map, then a row. */
+/* Samples a direction in a piece of a visible_portal: a column of the map, then a row. */
 ACDF_FN void acdf_piece_sample(const AcdfPortalTable* table, const AcdfVisiblePortal* visible_portal, const uint32_t piece[2],
                                const double u[2], float direction[3]) {
     const AcdfPortalMap* map = &table->maps[visible_portal->map];
@@ -377,7 +377,7 @@ ACDF_FN void acdf_piece_sample(const AcdfPortalTable* table, const AcdfVisiblePo
     for (i = 0; i < 3; ++i) direction[i] = (float)(d[i] / length);
 }
 
-/* Draws a direction through a visible_portal: it, a column and a row of its pieces, then in the piece. */
+/* Samples a direction through a visible_portal: it, a column and a row of its pieces, then in the piece. */
 ACDF_FN void acdf_visible_portals_sample(const AcdfVisiblePortals* visible_portals, double* u, float direction[3]) {
     const uint32_t pieces = visible_portals->table.header->pieces;
     const AcdfVisiblePortal* visible_portal;

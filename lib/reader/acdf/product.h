@@ -1,4 +1,4 @@
-// Drawing directions of light from the product of light, cosine and BRDF at a shading point, with their exact
+// Sampling directions of light from the product of light, cosine and BRDF at a shading point, with their exact
 // density. C++17, header only, freestanding over acdf/cut_sample.h and acdf/brdf.h: no allocation, no exceptions,
 // no errors. For kernels define ACDF_METHOD, for example as __host__ __device__.
 //
@@ -27,11 +27,11 @@ namespace acdf {
 /// How much work `at` does.
 struct ProductOptions {
     /// Into how many parts the sphere is divided, 1 to ACDF_CUT_MAX_PARTS: the BRDF is evaluated about once a part.
-    /// More pay where more samples are drawn. 1: light times cosine and the BRDF half and half.
+    /// More pay where more samples are taken. 1: light times cosine and the BRDF half and half.
     int parts = 64;
 };
 
-/// A shading point, ready to be drawn from. Plain data of bounded size.
+/// A shading point, ready to be sampled from. Plain data of bounded size.
 template <class LobePoint>
 struct ProductPoint {
     SurfaceFrame frame;
@@ -41,10 +41,10 @@ struct ProductPoint {
         AcdfFastCut fast; ///< of bright tiles of the fast shape
     };
     LobePoint lobe;
-    double share; ///< of the samples that the BRDF's own sampler draws; below 0: nothing is drawn
+    double share; ///< of the samples that the BRDF's own sampler samples; below 0: nothing is sampled
 };
 
-/// Made of the light, of a local environment file or of an environment file, and a lobe. Draws from bright tiles that
+/// Made of the light, of a local environment file or of an environment file, and a lobe. Samples from bright tiles that
 /// shared tiles describe follow the product; all others mix those of the light's own density and of the BRDF's half
 /// and half. Holds views: valid while their files live. All functions are const, thread-safe, allocate and throw
 /// nothing.
@@ -74,10 +74,10 @@ public:
         return at(surface_frame(normal), wo);
     }
 
-    /// Draws a direction; u0 and u1 in [0, 1]. pdf in sr^-1; 0 where nothing is drawn: it counts as 0, as do
+    /// Samples a direction; u0 and u1 in [0, 1]. pdf in sr^-1; 0 where nothing is sampled: it counts as 0, as do
     /// directions below the surface.
     ACDF_METHOD ProductSample sample(const Point& point, double u0, double u1) const noexcept;
-    /// The same of u[i] into out[i], i < count, to the bit: in less time where a point is drawn from several times.
+    /// The same of u[i] into out[i], i < count, to the bit: in less time where a point is sampled from several times.
     ACDF_METHOD void sample(const Point& point, std::size_t count, const double (*u)[2],
                             ProductSample* out) const noexcept;
     /// Density in sr^-1 of a unit direction; exactly that of `sample` for what it returned. Positive wherever that
@@ -94,13 +94,13 @@ private:
         point.frame.to_local(direction, wi);
         return lobe_.pdf(point.lobe, wi);
     }
-    /// Several of the light's part, where a cut is drawn from.
+    /// Several of the light's part, where a cut is sampled from.
     ACDF_METHOD void light_samples(const Point& point, std::size_t count, const double (*u)[2],
                                    ProductSample* out) const noexcept;
     ACDF_METHOD void light_pdfs(const Point& point, std::size_t count, const float (*directions)[3],
                                 float* out) const noexcept;
     ACDF_METHOD static float mixed(const Point& point, float light, float lobe) noexcept;
-    /// Whether a cut is drawn from, and the lobe.
+    /// Whether a cut is sampled from, and the lobe.
     ACDF_METHOD static bool samples_both(const Point& point) noexcept {
         return (point.light.what == ACDF_LOCAL_BLEND || samples_groups(point)) && point.share >= 0.0 &&
                point.share < 1.0;
@@ -216,13 +216,13 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
     return out;
 }
 
-/// Draws up to ACDF_CUT_WAVE of a point whose cut is drawn from, and its lobe.
+/// Samples up to ACDF_CUT_WAVE of a point whose cut is sampled from, and its lobe.
 template <class AnyLobe>
 ACDF_METHOD void ProductSampler<AnyLobe>::sample_wave(const Point& point, std::size_t count, const double (*u)[2],
                                                       ProductSample* out) const noexcept {
     std::size_t of_light[ACDF_CUT_WAVE], of_lobe[ACDF_CUT_WAVE], lit = 0;
     double rest[ACDF_CUT_WAVE][2];
-    ProductSample drawn[ACDF_CUT_WAVE];
+    ProductSample sampled[ACDF_CUT_WAVE];
     float directions[ACDF_CUT_WAVE][3], wi[ACDF_CUT_WAVE][3], light[ACDF_CUT_WAVE], lobe[ACDF_CUT_WAVE];
     for (std::size_t i = 0; i < count; ++i) {
         const double x = acdf_unit_interval(u[i][0]);
@@ -232,21 +232,21 @@ ACDF_METHOD void ProductSampler<AnyLobe>::sample_wave(const Point& point, std::s
         lit += static_cast<std::size_t>(!(x < point.share));
     }
     const std::size_t reflected = count - lit;
-    light_samples(point, lit, rest, drawn);
+    light_samples(point, lit, rest, sampled);
     for (std::size_t k = 0; k < lit; ++k) {
-        out[of_light[k]] = drawn[k];
-        light[of_light[k]] = drawn[k].pdf;
+        out[of_light[k]] = sampled[k];
+        light[of_light[k]] = sampled[k].pdf;
     }
     for (std::size_t k = 0; k < reflected; ++k) {
         rest[k][0] = acdf_unit_interval(u[of_lobe[k]][0]) / point.share;
         rest[k][1] = u[of_lobe[k]][1];
     }
-    lobe_samples(lobe_, point.lobe, rest, reflected, drawn, 0);
-    for (std::size_t k = 0; k < reflected; ++k) point.frame.to_world(drawn[k].direction, directions[k]);
+    lobe_samples(lobe_, point.lobe, rest, reflected, sampled, 0);
+    for (std::size_t k = 0; k < reflected; ++k) point.frame.to_world(sampled[k].direction, directions[k]);
     light_pdfs(point, reflected, directions, lobe);
     for (std::size_t k = 0; k < reflected; ++k) {
         const std::size_t i = of_lobe[k];
-        out[i] = {{directions[k][0], directions[k][1], directions[k][2]}, drawn[k].pdf};
+        out[i] = {{directions[k][0], directions[k][1], directions[k][2]}, sampled[k].pdf};
         light[i] = lobe[k];
     }
     for (std::size_t i = 0; i < count; ++i) point.frame.to_local(out[i].direction, wi[i]);

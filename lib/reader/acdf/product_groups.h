@@ -168,9 +168,9 @@ ACDF_METHOD void GroupRating<AnyLobe>::look(const Looks& looks) noexcept {
 /// Mean and mass of parts, from what was seen there.
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::rate(int first, int end) noexcept {
-    const float drawn = static_cast<float>(guides_.drawn);
+    const float sampled = static_cast<float>(guides_.sampled);
     for (int i = first; i < end; ++i) {
-        const float own = 1.0f / (1.0f + solid_angle_[i] * drawn * pdf_[i]);
+        const float own = 1.0f / (1.0f + solid_angle_[i] * sampled * pdf_[i]);
         mean_[i] = own * value_[i];
         mass_[i] = own * pdf_[i] * solid_angle_[i];
     }
@@ -178,7 +178,7 @@ ACDF_METHOD void GroupRating<AnyLobe>::rate(int first, int end) noexcept {
 /// The same from a guide that lies in a part.
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::rate_guide(int part, int guide) noexcept {
-    const float expected = solid_angle_[part] * static_cast<float>(guides_.drawn);
+    const float expected = solid_angle_[part] * static_cast<float>(guides_.sampled);
     const float weight = 1.0f / (1.0f + expected * guides_.pdf[guide]);
     mean_[part] += weight * guides_.value[guide];
     mass_[part] += weight * guides_.pdf[guide] * solid_angle_[part];

@@ -1,8 +1,8 @@
-/* Draws and densities of BRDF files for shaders, as acdf/brdf.h says (SPEC.md 6.8), in floats, over the words that
+/* Samples and pdfs of BRDF files for shaders, as acdf/brdf.h says (SPEC.md 6.8), in floats, over the words that
  * acdf::ShaderTables::make_walk (acdf/shader_tables.h) makes. One text for processors and for shaders of every
  * language (acdf/dialect.h), in which acdf/shader_walk.h stands, too: a shader has bright tiles and surfaces.
  *
- * Trees (acdf/shader_tree.h) divide the square of half-vectors, and leaves are its cells. A draw has the density
+ * Trees (acdf/shader_tree.h) divide the square of half-vectors, and leaves are its cells. A sample has the density
  * that its direction has at its own place in the cell, as the reader's has.
  *
  * Densities are the reader's but for the rounding of floats, below 1e-5 of them and 1e-6 of them over the cosine of
@@ -205,7 +205,7 @@ ACDF_FN5(ACDF_F32, acdf_brdf_pdf_at, ACDF_TABLES, tables, AcdfShaderView, view, 
     return (1.0f - view.diffuse) * lobe + view.diffuse * ACDF_MAX(z, 0.0f) * 0.31830989f;
 }
 
-/* Density per steradian with which acdf_brdf_walk_sample draws wi (unit) for a view. 0 where none falls, and for
+/* Density per steradian with which acdf_brdf_walk_sample samples wi (unit) for a view. 0 where none falls, and for
  * directions whose length differs from 1 by more than 5e-4 or that are not finite. */
 ACDF_FN5(ACDF_F32, acdf_brdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderView, view, ACDF_F32, x, ACDF_F32, y,
          ACDF_F32, z) {
@@ -220,7 +220,7 @@ ACDF_FN5(ACDF_F32, acdf_brdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderView, view
                                 place.spread, z);
 }
 
-/* ---- draws of half-vectors -------------------------------------------------------------------------- */
+/* ---- samples of half-vectors -------------------------------------------------------------------------- */
 
 /* Whether a place lies in the cell of a leaf. */
 ACDF_FN3(ACDF_U32, acdf_leaf_holds, ACDF_TABLES, tables, ACDF_U32, leaf, AcdfShaderHalf, place) {
@@ -263,7 +263,7 @@ ACDF_FN4(AcdfWalkSample, acdf_sample_in_cell, ACDF_TABLES, tables, AcdfShaderVie
     return acdf_walk_sampled(d, ACDF_MAX(acdf_brdf_walk_pdf(tables, view, d.x, d.y, d.z), 1.1754944e-38f));
 }
 
-/* Draws wi for a view and two random words: n0 / 2^32 (azimuth of the half-vector) and n1 / 2^32 (its height) are
+/* Samples wi for a view and two random words: n0 / 2^32 (azimuth of the half-vector) and n1 / 2^32 (its height) are
  * the random numbers of acdf_brdf_sample. wi may lie below the surface. pdf 0 where nothing is reflected. */
 ACDF_FN4(AcdfWalkSample, acdf_brdf_walk_sample, ACDF_TABLES, tables, AcdfShaderView, view, ACDF_U32, n0, ACDF_U32,
          n1) {

@@ -25,7 +25,7 @@ ACDF_FIELD(ACDF_F32, z)
 ACDF_FIELD(ACDF_F32, scale) /* of it to that of the weights */
 ACDF_STRUCT_END(AcdfShaderPoint)
 
-/* What draws from the whole tree at a link. */
+/* What samples from the whole tree at a link. */
 ACDF_FN1(AcdfShaderPoint, acdf_point_of_tree, ACDF_U32, root) {
     ACDF_VAR(AcdfShaderPoint, here);
     here.mix = acdf_mixture_below(root, 1.0f);

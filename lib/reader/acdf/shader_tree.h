@@ -3,8 +3,8 @@
  * processors and for shaders of every language (acdf/dialect.h).
  *
  * A tree of splits ends in leaves. A split is known by its key, which directions have too, so that one tree serves
- * draws and densities, and both multiply the same factors in the same order. Random numbers are whole, and what is
- * left of them is exact: a cell of probability p is drawn with p but for 2^-24 of it a split, which is where floats
+ * samples and densities, and both multiply the same factors in the same order. Random numbers are whole, and what is
+ * left of them is exact: a cell of probability p is sampled with p but for 2^-24 of it a split, which is where floats
  * put borders. */
 #ifndef ACDF_SHADER_TREE_H
 #define ACDF_SHADER_TREE_H
@@ -142,22 +142,22 @@ ACDF_FN4(AcdfWalkMixture, acdf_mixture_part, ACDF_TABLES, tables, AcdfWalkMixtur
 /* Words of a leaf; of what they tell, acdf/shader_walk.h and acdf/shader_brdf.h speak. */
 #define ACDF_LEAF_WORDS 10u
 
-/* What is drawn. */
+/* What is sampled. */
 ACDF_STRUCT_BEGIN(AcdfWalkSample)
 ACDF_FIELD(ACDF_F32, x) /* a unit direction */
 ACDF_FIELD(ACDF_F32, y)
 ACDF_FIELD(ACDF_F32, z)
-ACDF_FIELD(ACDF_F32, pdf) /* sr^-1; 0: nothing was drawn */
+ACDF_FIELD(ACDF_F32, pdf) /* sr^-1; 0: nothing was sampled */
 ACDF_STRUCT_END(AcdfWalkSample)
 
 /* A direction with its density. */
 ACDF_FN2(AcdfWalkSample, acdf_walk_sampled, AcdfVector, d, ACDF_F32, pdf) {
-    ACDF_VAR(AcdfWalkSample, drawn);
-    drawn.x = d.x;
-    drawn.y = d.y;
-    drawn.z = d.z;
-    drawn.pdf = pdf;
-    return drawn;
+    ACDF_VAR(AcdfWalkSample, sampled);
+    sampled.x = d.x;
+    sampled.y = d.y;
+    sampled.z = d.z;
+    sampled.pdf = pdf;
+    return sampled;
 }
 
 /* Random numbers: what is left of them, of how many steps. */

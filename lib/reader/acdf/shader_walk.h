@@ -1,4 +1,4 @@
-/* Draws and densities by trees, for shaders: of environments on either grid and of local environments, over the
+/* Samples and pdfs by trees, for shaders: of environments on either grid and of local environments, over the
  * words that acdf::ShaderTables::make_walk (acdf/shader_tables.h) makes. 32-bit words and floats alone, an answer
  * for every number and every direction. `acdf export` writes this text in the languages of shaders (lib/shader);
  * here it is C.
@@ -7,7 +7,7 @@
  * cells of the octahedral square. The fast shape of local environments has tiles and grids instead
  * (acdf/shader_tiles.h, acdf/shader_grids.h).
  *
- * Densities are the reader's but for the rounding of floats, below 1e-5 of them. A draw is moved 2^-20 radians (or
+ * Densities are the reader's but for the rounding of floats, below 1e-5 of them. A sample is moved 2^-20 radians (or
  * 2^-20 of the square's side) inwards; the density of a direction so close to a border may be the neighbour's. */
 #ifndef ACDF_SHADER_WALK_H
 #define ACDF_SHADER_WALK_H
@@ -21,7 +21,7 @@ extern "C" {
 /* ---- leaves ----------------------------------------------------------------------------------------- */
 
 /* Words of a leaf: quarter, south (bit 2), and the number of the tile's light and 1 (from bit 3); density in its
- * tile or tree, sr^-1; of each axis low, width, the least and the greatest that is drawn. Axes are local azimuth
+ * tile or tree, sr^-1; of each axis low, width, the least and the greatest that is sampled. Axes are local azimuth
  * (radians) and 1 - |z|, in the south from the pole up, or those of the square. */
 
 /* Keys of a direction: upper parts of splits begin at theirs. */
@@ -51,7 +51,7 @@ ACDF_FN5(ACDF_F32, acdf_walk_combined_pdf, AcdfShaderPoint, here, ACDF_F32, ligh
     return (1.0f - here.cosine) * light + here.cosine * cosine * 0.31830989f;
 }
 
-/* Density per steradian with which acdf_walk_sample draws a direction (unit) at a point. 0 where none falls, and
+/* Density per steradian with which acdf_walk_sample samples a direction (unit) at a point. 0 where none falls, and
  * for directions whose length differs from 1 by more than 5e-4 or that are not finite. */
 ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_F32, x, ACDF_F32, y, ACDF_F32,
          z) {
@@ -75,7 +75,7 @@ ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AC
         here, acdf_walk_bright_tile_pdf(tables, here, acdf_walk_find(tables, here.mix, place.key0, place.key1)), x, y, z);
 }
 
-/* ---- draws ------------------------------------------------------------------------------------------ */
+/* ---- samples ------------------------------------------------------------------------------------------ */
 
 /* A coordinate of a leaf, by an axis at a word. */
 ACDF_FN3(ACDF_F32, acdf_walk_along, ACDF_TABLES, tables, ACDF_U32, axis, ACDF_F32, part) {
@@ -114,7 +114,7 @@ ACDF_FN3(AcdfVector, acdf_walk_cosine, AcdfShaderPoint, here, ACDF_F32, u0, ACDF
     return d;
 }
 
-/* Draws a light: its link becomes the end's leaf. */
+/* Samples a light: its link becomes the end's leaf. */
 ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_bright_tile, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
     ACDF_VAR(AcdfWalkEnd, end);
     ACDF_VAR(ACDF_F32, rest) = here.light_sum;
@@ -142,7 +142,7 @@ ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_bright_tile, ACDF_TABLES, tables, AcdfSha
     return end;
 }
 
-/* Draws by bright tiles and rows: where a walk ends; of the fast shape the tile of a light, or ACDF_WALK_ON_GRIDS. */
+/* Samples by bright tiles and rows: where a walk ends; of the fast shape the tile of a light, or ACDF_WALK_ON_GRIDS. */
 ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_row, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
     ACDF_VAR(AcdfWalkNumbers, left) = numbers;
     ACDF_VAR(AcdfWalkMixture, mix) = here.mix;
@@ -171,7 +171,7 @@ ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_row, ACDF_TABLES, tables, AcdfShaderPoint
     return end;
 }
 
-/* Draws a direction at a point for two random words: n0 / 2^32 (azimuth) and n1 / 2^32 (elevation) are the random
+/* Samples a direction at a point for two random words: n0 / 2^32 (azimuth) and n1 / 2^32 (elevation) are the random
  * numbers of acdf_local_sample_at and acdf_environment_sample. pdf 0 where nothing serves the point. */
 ACDF_FN4(AcdfWalkSample, acdf_walk_sample, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_U32, n0, ACDF_U32, n1) {
     ACDF_VAR(AcdfWalkNumbers, numbers) = acdf_walk_numbers(n0, n1);

@@ -62,7 +62,7 @@ ACDF_INLINE __m128i acdf_short_curve_values(const AcdfShortCurve* curve) {
                               curve->inner);
 }
 
-/* The segment that a number below `maximum` draws; *low and *width as acdf_short_curve_width tells them. */
+/* The segment that a number below `maximum` samples; *low and *width as acdf_short_curve_width tells them. */
 ACDF_INLINE uint32_t acdf_short_curve_sampled(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
                                             uint32_t* width) {
     const __m128i values = acdf_short_curve_values(curve);
@@ -178,7 +178,7 @@ ACDF_INLINE uint32_t acdf_short_curve_width(const AcdfShortCurve* curve, uint32_
     return acdf_byte_at(curve->cumulative, segment) - *low;
 }
 
-/* The segment that a number below `maximum` draws; *low and *width as acdf_short_curve_width tells them. */
+/* The segment that a number below `maximum` samples; *low and *width as acdf_short_curve_width tells them. */
 ACDF_INLINE uint32_t acdf_short_curve_sampled(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
                                             uint32_t* width) {
     const uint32_t segment = acdf_first_above(curve->cumulative, number, curve->inner);
@@ -197,7 +197,7 @@ ACDF_INLINE uint32_t acdf_short_curve_narrow(const AcdfShortCurve* curve, uint32
 
 #endif
 
-/* Draws one segment, of whatever curve: as acdf_tree_sample does. Returns the distance to its child, 0 where it
+/* Samples one segment, of whatever curve: as acdf_tree_sample does. Returns the distance to its child, 0 where it
  * ends. */
 ACDF_INLINE uint32_t acdf_short_curve_sample(const uint8_t* tree, uint32_t units, uint32_t at, double* u, AcdfRange* range,
                                      double* probability) {

@@ -14,7 +14,7 @@ typedef struct AcdfDirectionSample {
     float pdf;          /* sr^-1, finite and > 0 */
 } AcdfDirectionSample;
 
-/* A draw that is returned by a call in two registers. Compilers take it out of memory then, where what was written
+/* A sample that is returned by a call in two registers. Compilers take it out of memory then, where what was written
  * in pieces of 4 bytes is waited for if more are read at once: so it is written at once. */
 ACDF_INLINE AcdfDirectionSample acdf_returned(const AcdfDirectionSample* sample) {
 #ifdef ACDF_SSE2

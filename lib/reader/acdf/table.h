@@ -2,7 +2,7 @@
  * C99, C++17 and CUDA/HIP/SYCL, with the same contract: plain views into a checked file, no allocation, no errors.
  *
  * The first `indexed_count` axes are chosen by the caller: one index each, in [0, resolution), which together name
- * a bin. The others are drawn: a point x with one coordinate a sampled axis, in the units of the axis. Densities
+ * a bin. The others are sampled: a point x with one coordinate a sampled axis, in the units of the axis. Densities
  * are per product of those units, and integrate to 1 within each bin that has any energy.
  *
  * Coordinates are double because an axis may have more steps than a float has values. A sample keeps clear of its
@@ -39,13 +39,13 @@ typedef struct AcdfTablePosition {
 #define ACDF_DOUBLE_MIN 2.2250738585072014e-308
 #define ACDF_DOUBLE_MAX 1.7976931348623157e308
 
-/* How many axes are drawn: numbers of `u` and `x`. */
+/* How many axes are sampled: numbers of `u` and `x`. */
 ACDF_FN uint32_t acdf_table_sampled_count(const AcdfTable* table) {
     return table->axis_count - table->indexed_count;
 }
 
 /* The bin of index[indexed_count] (null where no axis is indexed); null where an index is out of range or the bin
- * has no energy: nothing can be drawn there. */
+ * has no energy: nothing can be sampled there. */
 ACDF_FN const AcdfBin* acdf_table_bin(const AcdfTable* table, const uint32_t* index) {
     size_t bin = 0;
     uint32_t axis;
@@ -144,9 +144,9 @@ ACDF_INLINE double acdf_table_entry_sample(const AcdfTable* table, const AcdfEnt
     return acdf_table_cell_pdf(table, p, &place);
 }
 
-/* Draws a point. index[indexed_count] as in acdf_table_bin; u[sampled count] in [0, 1], clamped, NaN counts as 0.
+/* Samples a point. index[indexed_count] as in acdf_table_bin; u[sampled count] in [0, 1], clamped, NaN counts as 0.
  * Fills x[sampled count], monotone in each u within a segment, and returns the density there, finite and > 0.
- * Returns 0, and leaves x as it is, where there is nothing to draw. */
+ * Returns 0, and leaves x as it is, where there is nothing to sample. */
 ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, const double* u, double* x) {
     const AcdfBin* bin = acdf_table_bin(table, index);
     const uint32_t first = table->indexed_count;
@@ -219,7 +219,7 @@ ACDF_INLINE double acdf_table_entry_pdf(const AcdfTable* table, const AcdfEntryB
     return p > 0.0 ? acdf_table_cell_pdf(table, p, &place) : 0.0;
 }
 
-/* Density with which acdf_table_sample draws x in the bin of `index`; 0 where none falls. */
+/* Density with which acdf_table_sample samples x in the bin of `index`; 0 where none falls. */
 ACDF_FN double acdf_table_pdf(const AcdfTable* table, const uint32_t* index, const double* x) {
     const AcdfBin* bin = acdf_table_bin(table, index);
     const AcdfEntryBin* grids = bin ? acdf_table_entries(table, bin) : 0;

@@ -1,5 +1,5 @@
 /* Runtime tables of table files (acdf/table.h): which cell holds a point, or deep down in which curve of its bin's
- * tree a point or random numbers lie. From there the tree is walked: what is drawn and told is the walk's to the
+ * tree a point or random numbers lie. From there the tree is walked: what is sampled and told is the walk's to the
  * bit. Made once at load (acdf/reader.h); flat words without pointers, which a GPU takes as they lie.
  *
  * Each bin has a grid over the positions of its sampled axes and one over their random numbers. An entry of the

@@ -237,7 +237,7 @@ ACDF_INLINE uint32_t acdf_visibility_find_rows(const AcdfVisibilityTable* table,
     ACDF_VISIBILITY_WALK(1, 4);                                                                                         \
     return ACDF_VISIBILITY_CALL(mix->count, mixture->count)
 
-/* Draws a tile, as acdf_blend_sample_below does, of a mixture as a mixture sees it (which has a row at least). */
+/* Samples a tile, as acdf_blend_sample_below does, of a mixture as a mixture sees it (which has a row at least). */
 ACDF_FN uint32_t acdf_visibility_sample_below(const AcdfVisibilityTable* table, const AcdfBlend* blend,
                                          const AcdfMixture* mix, const AcdfVisibilityMixture* mixture, uint32_t node,
                                          double* u, AcdfRange* range, double* probability) {

@@ -133,7 +133,7 @@ struct DarkBySums {
     }
 };
 
-// Light is drawn as a light or in the mixture, but not both.
+// Light is sampled as a light or in the mixture, but not both.
 template <class Dark>
 void check_bright_tile_rows(const Payload& payload, Report& report, const Parts& parts) {
     const u32 bins = parts.bins ? parts.description->bin_count : 0;

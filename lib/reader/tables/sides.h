@@ -124,7 +124,7 @@ struct Side {
     std::uint32_t last_key() const { return static_cast<std::uint32_t>(key[1] < beyond ? key[1] : beyond - 1.0); }
 };
 
-/// A draw stays this angle (radians) inside its piece: four times ACDF_BORDER, for what floats round.
+/// A sample stays this angle (radians) inside its piece: four times ACDF_BORDER, for what floats round.
 constexpr double kSideMargin = 0x1p-20;
 constexpr std::uint32_t kSouthKeys = (1u << ACDF_DIRECTION_BITS) - 1;
 

@@ -17,7 +17,7 @@ using u32 = std::uint32_t;
 
 constexpr u32 kFewestBinCells = 16;        // of a bin whose tree is not walked from its root
 constexpr double kEntriesACell = 8.0;      // of each grid, at most
-constexpr double kNumberEntries = 0x1p16;  // at most: draws wait for memory as long as more of them save
+constexpr double kNumberEntries = 0x1p16;  // at most: samples wait for memory as long as more of them save
 constexpr u32 kMostEntryBits = 12;         // of entries along an axis
 constexpr double kNumberBorder = 0x1p-40;  // of random numbers: what is nearer to one, rounding may carry across
 constexpr u32 kFewestEntryUnits = 1 << 14; // of a tree whose tables need more than a large page

@@ -15,7 +15,7 @@ namespace {
 
 using u32 = std::uint32_t;
 
-// What a file draws from, if it is one that can be walked.
+// What a file samples from, if it is one that can be walked.
 AcdfLocal local_of(const File& file) {
     AcdfLocal local = {};
     if (file.kind() == ACDF_KIND_LOCAL) return file.local().data();
@@ -206,10 +206,10 @@ bool WalkMaker::bins() {
     if (trees && !links) return false;
     for (u32 i = 0; i < count && !failed_; ++i) {
         const AcdfBin& bin = local_.bins[i];
-        const bool drawn = bin.root != ACDF_NO_ROOT && (bin.share > 0.0f || brdf());
-        if (trees && drawn && tree_links_[bin.root] == ACDF_WALK_NONE) // several may have the same
+        const bool sampled = bin.root != ACDF_NO_ROOT && (bin.share > 0.0f || brdf());
+        if (trees && sampled && tree_links_[bin.root] == ACDF_WALK_NONE) // several may have the same
             tree_links_[bin.root] = tree(environment_.tree, bin.root, cells_.whole(), 0);
-        bins_.add(trees && drawn ? tree_links_[bin.root] : bin.root);
+        bins_.add(trees && sampled ? tree_links_[bin.root] : bin.root);
         bins_.add(acdf_float_bits(bin.share * scale));
     }
     return !(failed_ || bins_.failed());

@@ -114,7 +114,7 @@ inline std::vector<Probe> probes() {
         probe("one lamp", [](u32 c, u32 r) { return c == 20 && r == 20 ? 100.0 : 0.0; })};
 }
 
-/// A file, as what it draws at a normal.
+/// A file, as what it samples at a normal.
 struct Made {
     std::vector<std::uint8_t> bytes;
     File file;
@@ -178,7 +178,7 @@ inline void make(const Probe& probe, const Kind& kind, Made& out, std::uint64_t 
 
 inline double share_of(const builder::Partner& partner) { return partner.light / (partner.light + partner.other); }
 
-/// Weight over number of samples and density, of a sample that was drawn with `own` beside `other`, both densities
+/// Weight over number of samples and density, of a sample that was sampled with `own` beside `other`, both densities
 /// times the share of their samples.
 inline double weight(double own, double other, AcdfHeuristic heuristic) {
     return heuristic == ACDF_HEURISTIC_POWER ? own / (own * own + other * other) : 1.0 / (own + other);

@@ -71,7 +71,7 @@ double estimate(const Probe& probe, const Made& made, const Vector& n, AcdfHeuri
 }
 
 /// What an estimate's mean is off by, in standard errors of summation. By the variance that sums over texels give,
-/// so that a bright light that was never drawn does not make the error small.
+/// so that a bright light that was never sampled does not make the error small.
 class Scores {
 public:
     void add(double z) {

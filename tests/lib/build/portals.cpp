@@ -207,7 +207,7 @@ TEST(PortalFiles, AreUnbiasedWhereHalfOfTheWindowIsShut) {
     ACDF_NOT_SANITIZED();
     expect_as_summed(windowed(), {kHalf}, 100, 0.3);
 }
-/// What comes in there is drawn rarely: means of so few samples are far from normal.
+/// What comes in there is sampled rarely: means of so few samples are far from normal.
 TEST(PortalFiles, AreUnbiasedWhereADoorIsOpened) { expect_as_summed(windowed(), {kWindow, kDoor}, 100, 1.0); }
 
 double mean_variance(const RoomFile& made) {

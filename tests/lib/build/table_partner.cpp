@@ -25,7 +25,7 @@ build::TableOptions beside(const input::NpyArray& other, AcdfHeuristic heuristic
     return options;
 }
 
-/// What a file draws of a bin, what its partner does, and f: densities at the middles of boxes, of one each.
+/// What a file samples of a bin, what its partner does, and f: densities at the middles of boxes, of one each.
 struct BesideOther {
     std::vector<double> f, p, b;
 

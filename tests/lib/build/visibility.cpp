@@ -123,7 +123,7 @@ const Built& plain() {
 /// What arrives at a point, exactly (of light in the middles of texels), and the variance of one sample.
 struct Exact {
     double irradiance = 0.0, variance = 0.0;
-    int lost = 0; ///< texels whose light is never drawn
+    int lost = 0; ///< texels whose light is never sampled
 };
 
 Exact exact(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const VisibilityPoint& point, const Wall& wall) {

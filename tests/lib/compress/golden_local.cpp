@@ -38,12 +38,12 @@ TEST_P(GoldenLocal, DrawsTheSameSamplesByRuntimeTables) { // but for the roundin
 }
 
 TEST_P(GoldenLocal, HasThatPdfThere) {
-    int drawn = 0;
+    int sampled = 0;
     for (const acdf_test::GoldenSample& line : lines_) {
         EXPECT_EQ(file_.local().pdf(line.given, line.direction), line.pdf);
-        drawn += line.pdf > 0.0f;
+        sampled += line.pdf > 0.0f;
     }
-    EXPECT_GT(drawn, 60);
+    EXPECT_GT(sampled, 60);
 }
 
 INSTANTIATE_TEST_SUITE_P(V1_0, GoldenLocal,

@@ -1,4 +1,4 @@
-"""Draws and densities of arrays: shapes, types, memory, threads."""
+"""Samples and pdfs of arrays: shapes, types, memory, threads."""
 
 import concurrent.futures
 import glob

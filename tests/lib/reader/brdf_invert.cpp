@@ -1,4 +1,4 @@
-// The random numbers that acdf_brdf_invert tells draw the direction that it was given.
+// The random numbers that acdf_brdf_invert tells sample the direction that it was given.
 #include "tests/lib/reader/brdf_forms.h"
 #include "tests/lib/reader/brdf_loaded.h"
 #include "tests/lib/reader/half_vectors.h"

@@ -1,4 +1,4 @@
-// The numbers beside golden files: one sample a line, and the fixture of those that are drawn for a direction.
+// The numbers beside golden files: one sample a line, and the fixture of those that are sampled for a direction.
 #pragma once
 
 #include <acdf/reader.h>
@@ -31,14 +31,14 @@ std::vector<std::array<double, Count>> golden_numbers(const std::string& path) {
     return lines;
 }
 
-/// A draw for a normal or a view: `given  u0 u1  direction  pdf` on a line.
+/// A sample for a normal or a view: `given  u0 u1  direction  pdf` on a line.
 struct GoldenSample {
     float given[3];
     double u[2];
     float direction[3], pdf;
 };
 
-/// A golden file, named by the parameter, and the 96 draws beside it.
+/// A golden file, named by the parameter, and the 96 samples beside it.
 class GoldenSamples : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {

@@ -84,7 +84,7 @@ TEST(Linked, environments) {
     }
 }
 
-// Several samples a normal, and one: then they are drawn in waves.
+// Several samples a normal, and one: then they are sampled in waves.
 void expect_local_arrays(std::size_t each) {
     Both both(golden("local"));
     const acdf::LocalEnvironmentView sky = both.file.local();

@@ -245,7 +245,7 @@ inline LocalSpec regional_local() {
     return spec;
 }
 
-/// visibility_local with two windows in a wall at x = 4 and one in a wall at y = 3; the last place draws by rows alone.
+/// visibility_local with two windows in a wall at x = 4 and one in a wall at y = 3; the last place samples by rows alone.
 inline LocalSpec windowed_local() {
     LocalSpec spec = visibility_local();
     spec.portals.emplace();

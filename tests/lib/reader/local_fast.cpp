@@ -45,7 +45,7 @@ struct FastFile {
 };
 
 TEST(FastShape, AgreesWithTheSlowDecoder) {
-    int drawn = 0, groups = 0;
+    int sampled = 0, groups = 0;
     for (std::uint32_t seed = 0; seed < kFastFiles; ++seed) {
         const FastFile loaded(random_fast(seed), seed % 3 != 0);
         const Local reference(loaded.bytes);
@@ -69,7 +69,7 @@ TEST(FastShape, AgreesWithTheSlowDecoder) {
                 const double cosine = (n[0] * d[0] + n[1] * d[1] + n[2] * d[2]) / std::hypot(n[0], n[1], n[2]);
                 const double pdf = (1 - sigma) * expected.pdf + sigma * std::max(0.0, cosine) / pi;
                 ASSERT_NEAR(s.pdf / pdf, 1.0, 1e-5);
-                ++drawn;
+                ++sampled;
             }
             const Normal any = random_direction(rng);
             float f[3];
@@ -78,7 +78,7 @@ TEST(FastShape, AgreesWithTheSlowDecoder) {
             ASSERT_NEAR(view.pdf(normal.data(), f), expected, 1e-5 * expected);
         }
     }
-    EXPECT_GT(drawn, 10000);
+    EXPECT_GT(sampled, 10000);
     EXPECT_GT(groups, 30);
 }
 
@@ -226,7 +226,7 @@ TEST(FastShape, TablesFindTheTilesOfSquaresThatAreAllCut) {
     find_tiles_where_all_is_cut(127, 101, 1);
 }
 
-// A draw for a normal that serves once is that at its point, to the bit: also where bright tiles end.
+// A sample for a normal that serves once is that at its point, to the bit: also where bright tiles end.
 TEST(FastShape, DrawsOfANormalAreThoseOfItsPoint) {
     int lit = 0;
     for (std::uint32_t seed = 0; seed < kFastFiles; ++seed) {
@@ -259,7 +259,7 @@ TEST(FastShape, StrataStayStrata) {
     const AcdfLocalPoint point = view.at(n);
     ASSERT_EQ(point.what, ACDF_LOCAL_FAST);
     double before = -1.0;
-    for (int i = 0; i <= 100000; ++i) { // tiles are drawn in their order within a group, groups in theirs
+    for (int i = 0; i <= 100000; ++i) { // tiles are sampled in their order within a group, groups in theirs
         double u[2] = {0.0, 0.5};
         const double whole = 32767.0 * point.fast.whole;
         AcdfFastShare share;

@@ -58,7 +58,7 @@ public:
         return before + 3 * r + x;
     }
 
-    /// What a normal draws from.
+    /// What a normal samples from.
     struct Source {
         enum { nothing, tree, blend } what = nothing;
         std::size_t root = 0;

@@ -1,4 +1,4 @@
-// Portals: what is drawn through windows, from files written by hand.
+// Portals: what is sampled through windows, from files written by hand.
 #include "tests/lib/reader/local_loaded.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ constexpr float kNormalsInside[][3] = {{1, 0, 0}, {0.6f, 0.3f, 0.4f}, {0.1f, -0.
 constexpr float kInside[][3] = {{0, 0, 1},       {2, -1, 1}, {2, 1.5f, 1}, {1.1f, 0.2f, 1},
                                 {0.9f, 0.6f, 2}, {3, 2, 4},  {3, 1, 1.5f}, {2.9f, -0.5f, 1.5f}};
 
-/// Rounding may carry what is drawn at the border of a square to the next one: the density is that of the
+/// Rounding may carry what is sampled at the border of a square to the next one: the density is that of the
 /// direction.
 TEST(Portals, SamplesHaveTheDensityThatIsFoundForThem) {
     float share = 0.0f;
@@ -44,7 +44,7 @@ TEST(Portals, SamplesHaveTheDensityThatIsFoundForThem) {
     }
 }
 
-/// Directions that a row never draws are drawn through no window alone, and what a row draws stays so.
+/// Directions that a row never samples are sampled through no window alone, and what a row samples stays so.
 TEST(Portals, NothingThatANormalSeesIsLost) {
     const LoadedLocal loaded(windowed_local());
     std::mt19937_64 random(8);
@@ -128,7 +128,7 @@ TEST(Portals, DirectionsFallWhereTheDensitySays) {
     }
 }
 
-/// Strata of random numbers stay together: next to each other, u draw directions of the same piece or of the next.
+/// Strata of random numbers stay together: next to each other, u sample directions of the same piece or of the next.
 TEST(Portals, NumbersAreClampedAndAtTheEndsSafe) {
     const LoadedLocal loaded(windowed_local());
     const AcdfLocalPoint point = loaded.view().at(kInside[0], kNormalsInside[0]);
@@ -143,7 +143,7 @@ TEST(Portals, NumbersAreClampedAndAtTheEndsSafe) {
     for (const auto& d : bad) EXPECT_EQ(loaded.view().pdf(point, d), 0.0f);
 }
 
-/// Cells without light stand between those with light, and at the ends: nothing is drawn there, whatever the
+/// Cells without light stand between those with light, and at the ends: nothing is sampled there, whatever the
 /// numbers.
 TEST(Portals, NothingIsDrawnInCellsWithoutLight) {
     LocalSpec spec = windowed_local();
@@ -184,7 +184,7 @@ TEST(Portals, RoundingIsNoLight) {
     EXPECT_EQ(LoadedLocal(spec).view().at(x, kNormalsInside[0]).visible_portals.count, 1);
 }
 
-/// A place that draws by its row alone, one behind a wall, one outside, and a normal alone see no windows.
+/// A place that samples by its row alone, one behind a wall, one outside, and a normal alone see no windows.
 TEST(Portals, PositionsWithoutAPortalSampleTheirRow) {
     const LoadedLocal loaded(windowed_local()), rows(visibility_local());
     const struct {

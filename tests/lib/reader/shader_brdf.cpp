@@ -1,4 +1,4 @@
-// BRDFs for shaders beside the reader's: each draw has the density that both tell of its direction, draws are the
+// BRDFs for shaders beside the reader's: each sample has the density that both tell of its direction, samples are the
 // reader's, and so are densities, but for the rounding of floats and directions next to a border.
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/brdf_forms.h"
@@ -102,7 +102,7 @@ BrdfCounted compare_brdf(const WalkedFile& file, std::size_t count) {
     for (std::size_t i = 0; i < count && !testing::Test::HasFatalFailure(); ++i) {
         const BrdfPoint point(file, wave.wo()[i]);
         std::uint32_t n[2];
-        bool inside = true; // else they, and what they draw, lie on the borders of cells
+        bool inside = true; // else they, and what they sample, lie on the borders of cells
         for (int k = 0; k < 2; ++k) {
             const double u = wave.u()[i][k];
             inside = inside && u > 1e-6 && u < 1.0 - 1e-6 && u != 0.5;
@@ -110,7 +110,7 @@ BrdfCounted compare_brdf(const WalkedFile& file, std::size_t count) {
         }
         SCOPED_TRACE(i);
         compare_brdf_sample(point, n[0], n[1], inside ? counted : ends);
-        compare_brdf_pdf(point, wave.wi()[i], inside ? counted : ends); // half of them are draws
+        compare_brdf_pdf(point, wave.wi()[i], inside ? counted : ends); // half of them are samples
     }
     return counted;
 }

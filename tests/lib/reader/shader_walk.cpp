@@ -1,4 +1,4 @@
-// Walks for shaders beside the reader's: each draw has the density that both tell of its direction, draws are the
+// Walks for shaders beside the reader's: each sample has the density that both tell of its direction, samples are the
 // reader's, and so are densities, but for the rounding of floats and directions next to a border.
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"

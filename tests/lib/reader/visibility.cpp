@@ -1,4 +1,4 @@
-// Visibility: what is drawn where, from files written by hand, and the frozen one.
+// Visibility: what is sampled where, from files written by hand, and the frozen one.
 #include "tests/lib/reader/golden_numbers.h"
 #include "tests/lib/reader/local_loaded.h"
 
@@ -150,7 +150,7 @@ class GoldenVisibility : public ::testing::TestWithParam<const char*> {};
 TEST_P(GoldenVisibility, SampleTheSameSamples) {
     const std::string path = std::string(ACDF_TEST_DIR "/golden/v1.0/") + GetParam();
     acdf::File file;
-    acdf::LoadOptions walked; // what is drawn by runtime tables differs as floats round
+    acdf::LoadOptions walked; // what is sampled by runtime tables differs as floats round
     walked.tables = false;
     const acdf::Status status = acdf::File::open((path + ".acdf").c_str(), file, walked);
     ASSERT_TRUE(status.ok()) << status.message;

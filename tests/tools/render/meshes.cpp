@@ -203,7 +203,7 @@ TEST(MeshVisibility, OfAMirroredFrameAreThoseOfTheirOwnCoordinates) {
     }
 }
 
-/// Under the roof the sky above the open half is drawn, and what the roof hides is not.
+/// Under the roof the sky above the open half is sampled, and what the roof hides is not.
 TEST(MeshVisibility, ArePlotted) {
     MeshFolder folder;
     folder.room_file("room.acdf");

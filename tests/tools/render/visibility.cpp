@@ -100,7 +100,7 @@ TEST(RenderVisibility, AreAsSummedInARoom) {
     expect_as_summed(scene, {{"local:24KiB"}, {"visibility:24KiB"}, {"tiles:8x4"}, {"visibility-cache:8x4"}});
 }
 
-/// Wherever light is, from any place and for any normal, it may be drawn.
+/// Wherever light is, from any place and for any normal, it may be sampled.
 TEST(RenderVisibility, LoseNoLightAnywhere) {
     ACDF_NOT_SANITIZED();
     for (const std::string& text : {test::small_scene("\"full-cdf\""), test::mesh_scene("room.obj")}) {

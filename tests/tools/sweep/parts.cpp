@@ -336,7 +336,7 @@ TEST(SweepRows, OfATinyProbeAreWhatTheFilesHave) {
             EXPECT_LE(lit.median, lit.worst) << r.label;
             EXPECT_EQ(std::isinf(lit.sobol), std::isinf(lit.mean)) << r.label;
         }
-        EXPECT_GE(r.lit[open_alone].mean, r.system == "full_cdf" ? 0.5 : 0.0) << r.label; // half is drawn in vain
+        EXPECT_GE(r.lit[open_alone].mean, r.system == "full_cdf" ? 0.5 : 0.0) << r.label; // half is sampled in vain
         if (r.fit == "variance") {
             build::EnvironmentOptions options;
             options.fit.goal.kind = compress::Goal::Kind::budget;

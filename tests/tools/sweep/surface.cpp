@@ -1,4 +1,4 @@
-// Variances of a diffuse surface: by summation, by drawing, and where light is hidden.
+// Variances of a diffuse surface: by summation, by sampling, and where light is hidden.
 #include "tests/inputs/synthetic.h"
 
 #include "measure/samplers/light_samplers.h"
@@ -34,7 +34,7 @@ TEST(SweepSurface, AgreesWithTheClosedFormsOfBaselines) {
     const std::vector<float> nothing(density.size(), 0.0f);
     const SurfaceVariances dark = summary(point_variances(target, nothing, in_the_open({normals[0]})), Scale::own);
     EXPECT_TRUE(std::isinf(dark.alone.mean));
-    // All that is drawn is the cosine's: half as many samples of it as are counted.
+    // All that is sampled is the cosine's: half as many samples of it as are counted.
     const double of_cosine = measure::CosineHemisphere(target).relative_variance(normals[0].data());
     EXPECT_NEAR(dark.partner.mean, 2.0 * of_cosine, 1e-9 * of_cosine);
     const Lit even = spread_of({1.0, 2.0, 4.0, 9.0});
@@ -107,7 +107,7 @@ TEST(SweepSurface, TheOccludersAreThoseOfTheDemoScene) {
     EXPECT_LT(share, 0.6);
 }
 
-// A set of a single point is uniform: then drawn variances are those that sums tell.
+// A set of a single point is uniform: then sampled variances are those that sums tell.
 TEST(SweepSurface, DrawnVariancesAreThoseOfTheSums) {
     const compress::Target target = acdf_test::noise_target(48, 24, 5, 1.0, 0.1);
     const auto sampler = measure::full_cdf_sampler(target);

@@ -1,4 +1,4 @@
-// The density of fitted local environment maps: what is drawn is what is told, and it covers the light.
+// The density of fitted local environment maps: what is sampled is what is told, and it covers the light.
 #include "tests/inputs/local_maps.h"
 #include "tests/inputs/sanitized.h"
 
@@ -256,7 +256,7 @@ Normal within(const Target& target, std::uint32_t column, std::uint32_t row, std
     return direction_at_position(target, column + place(), down);
 }
 
-/// Wherever light is above the horizon, however little, it can be drawn.
+/// Wherever light is above the horizon, however little, it can be sampled.
 TEST_P(Maps, CoverTheLight) {
     const Target& target = map_->target;
     std::vector<std::size_t> lit, bright;

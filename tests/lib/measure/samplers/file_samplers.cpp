@@ -35,8 +35,8 @@ void to_local(const ShadingPoint& point, const float w[3], float out[3]) {
         out[i] = static_cast<float>(axis[i][0] * w[0] + axis[i][1] * w[1] + axis[i][2] * w[2]);
 }
 
-/// The share of samples that are drawn at all.
-double drawn(const LightSampler& sampler, const ShadingPoint& at) {
+/// The share of samples that are taken at all.
+double sampled(const LightSampler& sampler, const ShadingPoint& at) {
     const auto point = sampler.point_sampler();
     point->move_to(at);
     std::mt19937_64 random(71);
@@ -120,7 +120,7 @@ TEST(FileSamplers, TabulatedBrdfsSampleByTheirPdfInTheWorld) {
         check.tolerance = 0.02;
         check.disagreeing = 1e-3;
         check.significance = 1e-4;
-        expect_samples_as_its_pdf(*sampler, point, {16, 8, 40}, "table", check, drawn(*sampler, point));
+        expect_samples_as_its_pdf(*sampler, point, {16, 8, 40}, "table", check, sampled(*sampler, point));
     }
 }
 

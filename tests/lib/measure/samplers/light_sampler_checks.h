@@ -70,7 +70,7 @@ struct SamplerCheck {
     double significance = sidak(0.01, 200);
 };
 
-/// What is drawn in vain has an outcome of its own: what the integral of the density lacks of 1.
+/// What is sampled in vain has an outcome of its own: what the integral of the density lacks of 1.
 inline void expect_samples_as_its_pdf(const acdf::measure::LightSampler& sampler,
                                           const acdf::measure::ShadingPoint& at, const SphereBins& bins,
                                           const std::string& name, const SamplerCheck& check = {},

@@ -218,7 +218,7 @@ TEST(Product, WeighingGroupsAndOpeningThemIsLessNoise) {
     EXPECT_LT(all[1], all[0]); // eight parts of smooth light are next to none
 }
 
-// A tile with much light that reaches above the horizon where its middle does not: it is drawn nonetheless.
+// A tile with much light that reaches above the horizon where its middle does not: it is sampled nonetheless.
 TEST(Product, LightAtTheHorizonIsDrawn) {
     const Light& light = lights()[4];
     const Surface& surface = surfaces()[0];

@@ -1,4 +1,4 @@
-// What rooms are lit by elsewhere: portals, and what can be seen of tiles at cache points. That each draws by the
+// What rooms are lit by elsewhere: portals, and what can be seen of tiles at cache points. That each samples by the
 // density it tells, and finds all the light that reaches a point.
 #include "tests/lib/measure/samplers/light_sampler_checks.h"
 #include "tests/lib/measure/samplers/baselines.h"
@@ -87,12 +87,12 @@ TEST(Portals, FindAllLightThatComesThroughThem) {
             EXPECT_NEAR(mean.mean, expected, 4.0 * mean.mean_error + 5e-3 * expected) << is_uniform;
             const double relative = square / (expected * expected) - 1.0;
             if (is_uniform) EXPECT_GT(relative, 0.05); // it knows no light
-            else EXPECT_LT(relative, 0.2);             // where two portals overlap it draws twice as much
+            else EXPECT_LT(relative, 0.2);             // where two portals overlap it samples twice as much
         }
     }
 }
 
-// Outside, and in the plane of a portal, there is nothing to draw; meshes with y up have their own coordinates.
+// Outside, and in the plane of a portal, there is nothing to sample; meshes with y up have their own coordinates.
 TEST(Portals, OfEveryPlace) {
     const Target target = probe();
     const std::vector<Portal> one{{{2, -1, 0}, {0, 2, 0}, {0, 0, 2}}};
@@ -170,7 +170,7 @@ TEST(Visibility, IsKnownAtCachePoints) {
         b->move_to(point.shading());
         SphereBins{32, 16}.for_each([&](std::size_t, const float* w, double omega) {
             const double p = a->pdf(w);
-            EXPECT_EQ(p > 0.0, b->pdf(w) > 0.0f); // what may be hidden is still drawn
+            EXPECT_EQ(p > 0.0, b->pdf(w) > 0.0f); // what may be hidden is still sampled
             (point.hidden({w[0], w[1], w[2]}) ? hidden : seen) += (p - b->pdf(w)) * omega;
         });
     }

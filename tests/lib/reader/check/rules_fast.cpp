@@ -159,7 +159,7 @@ TEST(FastRules, whatIsAtTheirLimitsIsRight) {
     }());
 }
 
-// Every truncation, and every byte of the two chunks changed, with CRCs that fit: refused, or drawn from safely.
+// Every truncation, and every byte of the two chunks changed, with CRCs that fit: refused, or sampled from safely.
 TEST(FastRules, changedBytesAreRefusedOrSafe) {
     for (const char* type : {"SUMS", "GRID", "TILE"}) {
         const FileSpec good = fast_lit_local().file();

@@ -24,7 +24,7 @@ namespace {
 using namespace acdf;
 using namespace acdf::test;
 
-/// Draws and densities of a file with runtime tables and without are the same to the bit: at drawn points,
+/// Samples and pdfs of a file with runtime tables and without are the same to the bit: at sampled points,
 /// anywhere, and next to the borders between steps.
 class AsWalked {
 public:
