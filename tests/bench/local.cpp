@@ -2,7 +2,8 @@
 // many at once, beside the full table of an environment of as many columns, which knows nothing of normals.
 //
 //   bench_local FILE.acdf...      tables in Markdown
-//   bench_local --count point|sample|pdf FILE N [walk|waves]     N calls and nothing else, for callgrind; waves: AVX2
+//   bench_local --count point|sample|pdf FILE N [walk|waves]     N calls and nothing else, for callgrind; waves:
+//   AVX2
 #include "tests/bench/directions.h"
 #include "tests/bench/full_table.h"
 #include "tests/bench/turns.h"
@@ -207,7 +208,8 @@ bool run(const char* path) {
     report("one of 16 samples at a point", all, at_points(kShared, draw), full_sample, shared_samples);
     report("density of a uniform direction at a normal of its own", all, once(q.anywhere), full_anywhere,
            of(q.anywhere));
-    report("density of a sampled direction at a normal of its own", all, once(q.sampled), full_sampled, of(q.sampled));
+    report("density of a sampled direction at a normal of its own", all, once(q.sampled), full_sampled,
+           of(q.sampled));
     report("one of 16 densities at a point", all, at_points(kShared, sampled), full_sampled, shared_pdfs);
     report("shading point, sample, and density of another direction (full table: both)", all, at_points(1, both),
            full_both, nullptr);

@@ -39,8 +39,8 @@ std::string sentence_of(const Sweep& sweep, const SituationAdvice& s) {
                        "independent samples (median point: " +
                        noise_texts(s.lit.median) + ")";
     if (s.lit.sobol == s.lit.sobol)
-        text += ", " + noise_text(s.lit.sobol, sweep.visible.spp) + " at " +
-                std::to_string(sweep.visible.spp) + " of a scrambled Sobol' sequence";
+        text += ", " + noise_text(s.lit.sobol, sweep.visible.spp) + " at " + std::to_string(sweep.visible.spp) +
+                " of a scrambled Sobol' sequence";
     const char* after = sweep.timed ? "After the same time: " : "After the same samples: ";
     text += std::string(". ") + after + noise_ratio_text(s.over_reference.value) + " the " + base.label;
     if (!s.has_baseline) return text + ".";

@@ -69,7 +69,7 @@ ACDF_INLINE float acdf_about_bounded(float position, float last) {
 /* Azimuths and heights, as acdf_brdf_position has them. The arc tangent is that of Abramowitz and Stegun, 4.4.47,
  * over pi: within 1e-5. */
 ACDF_INLINE void acdf_about_positions(const AcdfBrdf* brdf, const AcdfBrdfView* view, uint32_t count,
-                                   AcdfBrdfAbout* a) {
+                                      AcdfBrdfAbout* a) {
     const float turn0 = (float)view->turn[0], turn1 = (float)view->turn[1];
     const float columns = (float)brdf->columns, rows = (float)brdf->rows;
     const float last0 = acdf_about_last(brdf->columns), last1 = acdf_about_last(brdf->rows);

@@ -1,5 +1,5 @@
-/* Several samples from a cut side by side (acdf/cut_sample.h): what one of them waits for, memory and the splits and
- * curves on its way, the others use. Each is acdf_cut_sample's to the bit. One freestanding header, valid C99,
+/* Several samples from a cut side by side (acdf/cut_sample.h): what one of them waits for, memory and the splits
+ * and curves on its way, the others use. Each is acdf_cut_sample's to the bit. One freestanding header, valid C99,
  * C++17 and CUDA/HIP/SYCL; in kernels it makes single calls. */
 #ifndef ACDF_CUT_WAVE_H
 #define ACDF_CUT_WAVE_H
@@ -73,7 +73,8 @@ ACDF_INLINE void acdf_cut_wave_lights(const AcdfLocal* local, const AcdfLocalPoi
         acdf_cut_range(one->part, one->range);
         for (k = 0; k < ACDF_CUT_WAVE_ROWS; ++k)
             ACDF_PREFETCH(point->codes[k] + (one->part->entry & ~ACDF_TILE_FLAG));
-        if (lit) one->tile = acdf_cut_sample_bright_tile(local, cut, one->part, one->u, one->range, &one->probability);
+        if (lit)
+            one->tile = acdf_cut_sample_bright_tile(local, cut, one->part, one->u, one->range, &one->probability);
         mixed->lane[mixed->count] = i;
         mixed->count += (uint32_t)!lit;
     }

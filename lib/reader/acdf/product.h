@@ -44,10 +44,10 @@ struct ProductPoint {
     double share; ///< of the samples that the BRDF's own sampler samples; below 0: nothing is sampled
 };
 
-/// Made of the light, of a local environment file or of an environment file, and a lobe. Samples from bright tiles that
-/// shared tiles describe follow the product; all others mix those of the light's own density and of the BRDF's half
-/// and half. Holds views: valid while their files live. All functions are const, thread-safe, allocate and throw
-/// nothing.
+/// Made of the light, of a local environment file or of an environment file, and a lobe. Samples from bright tiles
+/// that shared tiles describe follow the product; all others mix those of the light's own density and of the BRDF's
+/// half and half. Holds views: valid while their files live. All functions are const, thread-safe, allocate and
+/// throw nothing.
 template <class AnyLobe>
 class ProductSampler {
 public:
@@ -77,7 +77,8 @@ public:
     /// Samples a direction; u0 and u1 in [0, 1]. pdf in sr^-1; 0 where nothing is sampled: it counts as 0, as do
     /// directions below the surface.
     ACDF_METHOD ProductSample sample(const Point& point, double u0, double u1) const noexcept;
-    /// The same of u[i] into out[i], i < count, to the bit: in less time where a point is sampled from several times.
+    /// The same of u[i] into out[i], i < count, to the bit: in less time where a point is sampled from several
+    /// times.
     ACDF_METHOD void sample(const Point& point, std::size_t count, const double (*u)[2],
                             ProductSample* out) const noexcept;
     /// Density in sr^-1 of a unit direction; exactly that of `sample` for what it returned. Positive wherever that

@@ -164,7 +164,9 @@ bool belongs(int known, u32 kind) {
 }
 
 // Whether a reader that does not know a chunk must refuse the file.
-bool is_critical(int known) { return known != chunk_metadata && known != chunk_visibility && known != chunk_portals; }
+bool is_critical(int known) {
+    return known != chunk_metadata && known != chunk_visibility && known != chunk_portals;
+}
 
 bool is_all_printable(u32 type) {
     return is_printable(type, 0) && is_printable(type, 1) && is_printable(type, 2) && is_printable(type, 3);

@@ -156,7 +156,8 @@ const Rule rules[] = {
      "A local environment has the axes of an environment, and one or two of normals as in §6.7."},
     {7004, error, malformed, "normal-bins", "A local environment has as many bins as its normals' axes make."},
     {7005, error, malformed, "local-chunk",
-     "A local environment has LOCL, as long as its count of bright tiles says, at most 64; `cosine_share` is in [0, "
+     "A local environment has LOCL, as long as its count of bright tiles says, at most 64; `cosine_share` is in "
+     "[0, "
      "1)."},
     {7006, error, malformed, "bright-tile",
      "A light is a tile, in ascending order, with the tile's box, a unit direction, a radius in (0, 2] and a "
@@ -169,14 +170,17 @@ const Rule rules[] = {
     {7010, error, malformed, "visibility-bounds",
      "The bounds of visibility cells are finite and rise, and the transform is finite."},
     {7011, error, malformed, "visibility-splits",
-     "Splits of visibility cells stand in preorder, at most 64 on a path, each met once, and lead to rows that are there."},
+     "Splits of visibility cells stand in preorder, at most 64 on a path, each met once, and lead to rows that are "
+     "there."},
     {7012, error, malformed, "visibility-split",
-     "A split of visibility cells is on one of axes 0 to 5, its position finite, its blend finite and not negative."},
+     "A split of visibility cells is on one of axes 0 to 5, its position finite, its blend finite and not "
+     "negative."},
     {7013, error, malformed, "visibility-columns",
      "The columns of splits of tiles are numbered from 0 in their order, all of them in each set; FFFF where a "
      "split has none."},
     {7014, error, malformed, "visibility-odds", "No odds of a cell are 0 or 255: no part of the light has none."},
-    {7015, error, malformed, "visibility-sets", "The set of columns that a row of visibility cells names is there."},
+    {7015, error, malformed, "visibility-sets",
+     "The set of columns that a row of visibility cells names is there."},
     {7016, error, malformed, "portals",
      "PORT comes with PLAC and is as long as its counts say: 1 to 8 portals, 1 to as many maps, of 1 to 4096 "
      "cells "

@@ -175,7 +175,8 @@ TEST(Product, SeveralSamplesOfFaintPartsAreThoseOfSingleCalls) {
                 AcdfCutPart& part = point.cut.part[i];
                 const double rows = scales[rng() % 5], bright_tiles = scales[rng() % 5];
                 for (double& weight : part.weight) weight *= rows;
-                for (std::uint32_t k = part.first_light; k < part.end_light; ++k) point.cut.light[k] *= bright_tiles;
+                for (std::uint32_t k = part.first_light; k < part.end_light; ++k)
+                    point.cut.light[k] *= bright_tiles;
                 part.bright_tiles = acdf_cut_bright_tiles(&point.cut, part.first_light, part.end_light);
                 part.sum = part.bright_tiles + ((part.weight[0] + part.weight[1]) + part.weight[2]);
                 part.probability *= scales[rng() % 5];
@@ -238,7 +239,8 @@ TEST(Product, NothingIsLeftOut) {
     });
 }
 
-// Where no light arrives the lobe's own sampler samples all: its samples count as 0, and the density is still right.
+// Where no light arrives the lobe's own sampler samples all: its samples count as 0, and the density is still
+// right.
 TEST(Product, HemispheresWithoutLightAreTheLobes) {
     LocalSpec spec = random_local(1, false);
     for (auto& light : spec.bright_tiles) light.share = 1e-30f;

@@ -129,7 +129,8 @@ TEST(RuntimeTablesOfBrdfs, GuessMostCells) {
     EXPECT_GT(right, 600);
 }
 
-/// Where a guess is wrong, samples go on beyond a side of its cell: there lies what the middle of that side touches.
+/// Where a guess is wrong, samples go on beyond a side of its cell: there lies what the middle of that side
+/// touches.
 TEST(RuntimeTablesOfBrdfs, NameCellsBeyondSides) {
     const BrdfPair pair(many_borders().encode());
     const AcdfBrdf brdf = pair.fast.brdf().data();
