@@ -10,7 +10,7 @@ data=$(cd "${1:?usage: docs/make/accuracy.sh DATA [SECTION...]}" && pwd)
 shift
 acdf=${ACDF:-$root/build/release/tools/acdf}
 results=${RESULTS:-$root/build/accuracy}
-sections=(e1 e1_fits e1_sizes e1_options e1_ratio octahedral e2 e3 e3_render e4_sizes e4_rivals e4_paper e4_bins e4_tiles e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden company company_exact company_draws rivals building summary)
+sections=(e1 e1_fits e1_sizes e1_options e1_ratio octahedral e2 e3 e3_render e4_sizes e4_baselines e4_paper e4_bins e4_tiles e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden partner partner_exact partner_draws baselines building summary)
 mkdir -p "$results"
 
 # Definitions for jq: rounding to three digits, and a value with its interval.
@@ -70,7 +70,7 @@ e2() {
 
 e3() { "$root/docs/make/brdf_tables.sh" "$data/brdfs" "$acdf"; }
 e4_sizes() { TABLES=sizes "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
-e4_rivals() { TABLES=rivals "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
+e4_baselines() { TABLES=baselines "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
 e4_paper() { TABLES=paper "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
 e4_bins() { TABLES=bins "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
 e4_tiles() { TABLES=tiles "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
@@ -101,7 +101,7 @@ e6_cook() { render e6-cook-torrance e6-cook-torrance 24x24; }
 e6_nickel() { render e6-nickel e6-nickel 24x24; }
 e6_plastic() { render e6-plastic e6-plastic 24x24; }
 
-# E7: the scenes of E6, and one of them behind a wall, with samplers of the product and their rivals.
+# E7: the scenes of E6, and one of them behind a wall, with samplers of the product and their baselines.
 e7_samplers=('mis(local:1MB,brdf:64KiB)' 'product(local:1MB,brdf:64KiB)'
     'product(local:1MB --shape fast,brdf:64KiB)' 'mis(compensated,brdf:64KiB)'
     'mis(warp(local:1MB,brdf:64KiB),brdf:64KiB)' 'mis(tiles:12x12(brdf:64KiB),brdf:64KiB)' 'ris:8(local:1MB,brdf:64KiB)' 'ris:32(local:1MB,brdf:64KiB)')
@@ -140,20 +140,20 @@ hidden() {
         "$results/hidden-grace.json"
 }
 
-# ---- files for a company ----------------------------------------------------------------------------------------
+# ---- files for an MIS partner ----------------------------------------------------------------------------------------
 
-# Everything that `acdf render` has for diffuse surfaces, beside files for a company of the cosine.
-company_samplers=('full-cdf' 'mis(full-cdf,cosine)' 'mis-compensated' 'tiles:32x16' 'ris:32' 'env:64KiB' 'local:1MB'
-    'mis(local:1MB,cosine)' 'mis(4*local:1MB,cosine)' 'mis(env:64KiB --with cosine --scene,cosine)'
-    'mis(local:1MB --with cosine,cosine)' 'mis(auto:local:1MB --with cosine,cosine)')
-company() { scenes company 24x18 20 e4-grace e4-stpeters e4-beach hidden-grace; }
+# Everything that `acdf render` has for diffuse surfaces, beside files for an MIS partner of the cosine.
+partner_samplers=('full-cdf' 'mis(full-cdf,cosine)' 'mis-compensated' 'tiles:32x16' 'ris:32' 'env:64KiB' 'local:1MB'
+    'mis(local:1MB,cosine)' 'mis(4*local:1MB,cosine)' 'mis(env:64KiB --mis cosine --scene,cosine)'
+    'mis(local:1MB --mis cosine,cosine)' 'mis(auto:local:1MB --mis cosine,cosine)')
+partner() { scenes partner 24x18 20 e4-grace e4-stpeters e4-beach hidden-grace; }
 
-company_exact() { ACDF=$acdf "${PYTHON:-/usr/bin/python3}" "$root/docs/make/company_exact.py" "$data"; }
-company_draws() { ACDF=$acdf "$root/docs/make/company_tables.sh" "$data" 12x9 24; }
+partner_exact() { ACDF=$acdf "${PYTHON:-/usr/bin/python3}" "$root/docs/make/partner_exact.py" "$data"; }
+partner_draws() { ACDF=$acdf "$root/docs/make/partner_tables.sh" "$data" 12x9 24; }
 
-# ---- rivals on the light itself -----------------------------------------------------------------------------------
+# ---- baselines on the light itself -----------------------------------------------------------------------------------
 
-rivals() {
+baselines() {
     "$acdf" sweep "$data/probes/noon_grass_1k.hdr" -o "$results/sweep" --force --quiet --json > "$results/sweep.json"
     echo "\`acdf sweep DATA/probes/noon_grass_1k.hdr -o out\`:"
     echo

@@ -65,8 +65,8 @@ def headline():
 
 def main():
     text = README.read_text(encoding="utf-8")
-    made, places = re.subn(r"(<!-- headline -->\n).*?(<!-- /headline -->)", lambda m: m[1] + headline() + "\n" + m[2], text, flags=re.S)
-    if places != 1:
+    made, count = re.subn(r"(<!-- headline -->\n).*?(<!-- /headline -->)", lambda m: m[1] + headline() + "\n" + m[2], text, flags=re.S)
+    if count != 1:
         sys.exit("headline.py: README.md has no place for the figures")
     if made == text:
         return 0

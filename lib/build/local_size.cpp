@@ -70,7 +70,7 @@ constexpr double kInsideOfCells = 0.3; // of files that are asked for by their c
 
 compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, double bytes, double inside) {
     constexpr double fixed = 2600.0;
-    const std::size_t of_bin = sizeof(AcdfBin) + (o.company ? sizeof(AcdfCompanyRecord) : 0);
+    const std::size_t of_bin = sizeof(AcdfBin) + (o.mis ? sizeof(AcdfPartnerRecord) : 0);
     const double room = bytes - fixed - double(bins.normals.size() * of_bin);
     compress::LocalSize size;
     size.shape = o.shape;

@@ -5,7 +5,7 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$2" "$folder/sky.pfm"
-"$1" local "$folder/sky.pfm" --filter bilinear --with cosine --budget 256KiB -o "$folder/sky.acdf" --quiet
+"$1" local "$folder/sky.pfm" --filter bilinear --mis cosine --budget 256KiB -o "$folder/sky.acdf" --quiet
 "$3" "$folder/sky.pfm" "$folder/sky.acdf" | tee "$folder/figures.txt"
 awk '{ sub(",", "", $(NF - 3)); mean[NR] = $(NF - 3); variance[NR] = $NF }
     END {

@@ -60,19 +60,19 @@ private:
     // A file made for MIS has pdf 0 where BSDF samples suffice. Light samples alone use the whole environment of a
     // local file, which is complete.
     bool UsesNormal(Normal3f ns, bool allowIncompletePDF) const {
-        return isLocal && ns != Normal3f(0, 0, 0) && (allowIncompletePDF || !local.needs_company());
+        return isLocal && ns != Normal3f(0, 0, 0) && (allowIncompletePDF || !local.requires_mis());
     }
     const acdf::EnvironmentView& Sky(bool allowIncompletePDF) const {
-        if (!allowIncompletePDF && sky.needs_company())
+        if (!allowIncompletePDF && sky.requires_mis())
             ErrorExit(
                 "the light's .acdf file was made for MIS, and this integrator takes light samples alone; make it "
-                "with --with none");
+                "with --mis none");
         return sky;
     }
     AcdfLocalPoint At(const Transform& renderFromLight, Point3f p, Normal3f ns) const {
         Normal3f n = renderFromLight.ApplyInverse(ns);
         float normal[3] = {-n.x, n.y, n.z};
-        if (!local.has_places()) return local.at(normal);
+        if (!local.has_visibility()) return local.at(normal);
         p = renderFromLight.ApplyInverse(p); // render space is relative to the camera
         float position[3] = {p.x, p.y, p.z}; // as the mesh has them: the file stores the mesh's axes
         return local.at(position, normal);

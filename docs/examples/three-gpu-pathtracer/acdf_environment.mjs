@@ -35,7 +35,7 @@ function tablesOf(file) {
     return texture;
 }
 
-/** Draws from `file` (an environment) instead of scene.environment's own tables. */
+/** Samples from `file` (an environment) instead of scene.environment's own tables. */
 export function drawEnvironmentFrom(pathTracer, file) {
     const {material} = pathTracer._pathTracer, before = material.fragmentShader;
     if (!before.includes(AFTER)) throw new Error(`the path tracer's shader has no "${AFTER}"`);

@@ -40,17 +40,17 @@ bool parse_order(const std::string& text, std::array<int, kFaces>& order) {
 }
 
 /// Where a face lies on the assembled map, in faces.
-struct Place {
+struct CrossPosition {
     int column, row;
 };
 
 // The horizontal cross has the front face in the middle, left and right beside it, the back face at the end: all as
 // Direct3D stores them. In OpenGL's right-handed frame +X is at the left of who looks at +Z.
-constexpr Place kDirectX[kFaces] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
-constexpr Place kOpenGl[kFaces] = {{0, 1}, {2, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
-constexpr Place kOpenExr[kFaces] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}};
+constexpr CrossPosition kDirectX[kFaces] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
+constexpr CrossPosition kOpenGl[kFaces] = {{0, 1}, {2, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
+constexpr CrossPosition kOpenExr[kFaces] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}};
 
-const Place* places_of(Faces::Frame frame) {
+const CrossPosition* cross_positions(Faces::Frame frame) {
     return frame == Faces::Frame::directx ? kDirectX : frame == Faces::Frame::opengl ? kOpenGl : kOpenExr;
 }
 
@@ -118,7 +118,7 @@ Image assemble(const std::vector<std::string>& paths, std::vector<Image> images,
     map.luminance = images[0].luminance;
     map.half = std::all_of(images.begin(), images.end(), [](const Image& image) { return image.half; });
     for (std::size_t i = 0; i < kFaces; ++i) {
-        const Place at = places_of(faces.frame)[faces.order[i]];
+        const CrossPosition at = cross_positions(faces.frame)[faces.order[i]];
         copy_face(images[i], 0, 0, map, at.column * n, at.row * n, n, mirrored);
         for (std::string& warning : images[i].warnings)
             if (std::find(map.warnings.begin(), map.warnings.end(), warning) == map.warnings.end())

@@ -44,20 +44,20 @@ std::string written(const std::vector<std::uint8_t>& bytes, const char* name) {
     return path;
 }
 
-std::string environment_file(AcdfCompanyKind company, const char* name) {
+std::string environment_file(AcdfPartnerKind partner, const char* name) {
     const std::vector<float> rgb = sky();
     builder::EnvironmentOptions options;
-    options.company.kind = company;
+    options.mis.kind = partner;
     builder::Environment made;
     EXPECT_TRUE(builder::environment(octahedral(rgb), options, made).ok());
     return written(made.bytes, name);
 }
 
-std::string local_file(AcdfCompanyKind company, const char* name) {
+std::string local_file(AcdfPartnerKind partner, const char* name) {
     const std::vector<float> rgb = sky();
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(64 << 10);
-    options.company.kind = company;
+    options.mis.kind = partner;
     builder::Local made;
     EXPECT_TRUE(builder::local(octahedral(rgb), options, made).ok());
     return written(made.bytes, name);
@@ -82,7 +82,7 @@ double expect_agreement(const ImageInfiniteLight& light, const LightSampleContex
 }
 
 TEST(PbrtLight, SamplesAnEnvironmentAndBuildsNoTables) {
-    const ImageInfiniteLight light = create_infinite({environment_file(ACDF_COMPANY_NONE, "pbrt_env.acdf")}, {});
+    const ImageInfiniteLight light = create_infinite({environment_file(ACDF_PARTNER_NONE, "pbrt_env.acdf")}, {});
     EXPECT_FALSE(light.has_tables);
     EXPECT_NEAR(expect_agreement(light, vertex, false), 4 * M_PI, 0.5);
     const std::optional<LightSample> ray = light.SampleLe({0.3f, 0.6f});
@@ -93,7 +93,7 @@ TEST(PbrtLight, SamplesAnEnvironmentAndBuildsNoTables) {
 }
 
 TEST(PbrtLight, SamplesTheSideOfALocalFileThatTheViewerSees) {
-    const std::string path = local_file(ACDF_COMPANY_NONE, "pbrt_local.acdf");
+    const std::string path = local_file(ACDF_PARTNER_NONE, "pbrt_local.acdf");
     const Transform transform = {{0.5f, 2.0f, -1.0f}};
     const ImageInfiniteLight light(transform, path);
     const Contexts contexts = contexts_of(vertex, {Reflection});
@@ -117,12 +117,12 @@ TEST(PbrtLight, SamplesTheSideOfALocalFileThatTheViewerSees) {
 
 TEST(PbrtLight, LetsNoIntegratorUseAFileForMisAlone) {
     const ImageInfiniteLight light =
-        create_infinite({environment_file(ACDF_COMPANY_MEAN, "pbrt_env_mis.acdf")}, {});
+        create_infinite({environment_file(ACDF_PARTNER_MEAN, "pbrt_env_mis.acdf")}, {});
     expect_agreement(light, vertex, true);
     EXPECT_THROW((void)light.SampleLi(vertex, {0.5f, 0.5f}, false), std::runtime_error);
     EXPECT_THROW((void)light.SampleLe({0.5f, 0.5f}), std::runtime_error);
     // A local file has its whole environment for them.
-    const ImageInfiniteLight local({}, local_file(ACDF_COMPANY_COSINE, "pbrt_local_mis.acdf"));
+    const ImageInfiniteLight local({}, local_file(ACDF_PARTNER_COSINE, "pbrt_local_mis.acdf"));
     expect_agreement(local, vertex, true);
     EXPECT_NEAR(expect_agreement(local, vertex, false), 4 * M_PI, 0.5);
 }
