@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# fast_shape.sh DATA [ACDF]: prints the table of docs/appendices/local-shapes.md, the mean relative variance of local files
+# fast_shape.sh DATA [ACDF]: prints the table of docs/appendix/local-shapes.md, the mean relative variance of local files
 # of both shapes.
 set -euo pipefail
 data=$1

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # pictures.sh DATA [NAME...]: the pictures of README.md and of the pages, into docs/figures. DATA holds probes/ and brdfs/.
 # Names: noise local_file brdf render sweep plot, which are all of them without; and places, which needs the files that
-# places.sh leaves in RESULTS (default: build/places). ACDF names the program (default:
+# visibility.sh leaves in RESULTS (default: build/places). ACDF names the program (default:
 # build/release/tools/acdf). Needs oiiotool, jq and, for `sweep`, chromium; tools/packages.txt lists them.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)

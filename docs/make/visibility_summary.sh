@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# visibility_summary.sh SUMS PICTURES: the summary in docs/visibility.md, of the tables that places.sh makes.
+# visibility_summary.sh SUMS PICTURES: the summary in docs/visibility.md, of the tables that visibility.sh makes.
 set -euo pipefail
 awk -F' *[|] *' '
     BEGIN {
-        name["`places:4MB`"] = "visibility cells, 4 MB"
-        name["`places-portals:4MB`"] = "cells and portals, 4 MB"
+        name["`visibility:4MB`"] = "visibility cells, 4 MB"
+        name["`visibility-portals:4MB`"] = "cells and portals, 4 MB"
         print "| scene | file | gain at equal samples | gain at equal time |"
         print "|---|---|---|---|"
     }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""place_scenes.py FOLDER: writes the scenes of docs/visibility.md, meshes (.obj, z up) and the .json that names them.
+"""visibility_scenes.py FOLDER: writes the scenes of docs/visibility.md, meshes (.obj, z up) and the .json that names them.
 
 The same on every machine. Meshes are told by absolute paths, so that --data of acdf render can be the folder of probes.
 """

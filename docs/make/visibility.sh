@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
-# places.sh DATA [SCENE...]: writes the tables of docs/appendices/visibility.md: of sums at points, and of pictures of
+# visibility.sh DATA [SCENE...]: writes the tables of docs/appendix/visibility.md: of sums at points, and of pictures of
 # 16 x 12 pixels; and the summary of both in docs/visibility.md. DATA holds probes/; scenes: hidden-grace and those of
-# docs/make/place_scenes.py. BENCH names the program (default: build/release/tests/bench/bench_places, of a build with
+# docs/make/visibility_scenes.py. BENCH names the program (default: build/release/tests/bench/bench_places, of a build with
 # -DACDF_BUILD_BENCHMARKS=ON); POINTS is how many of those that the camera sees are asked (default: 1000). Files are left in
 # RESULTS (default: build/places), and used where they are there. A file takes minutes, and so do 1000 points.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-data=$(cd "${1:?usage: docs/make/places.sh DATA [SCENE...]}" && pwd)
+data=$(cd "${1:?usage: docs/make/visibility.sh DATA [SCENE...]}" && pwd)
 shift
 scenes=${*:-hidden-grace room courtyard car trees}
 bench=${BENCH:-$root/build/release/tests/bench/bench_places}
 results=${RESULTS:-$root/build/places}
 mkdir -p "$results"
-python3 "$root/docs/make/place_scenes.py" "$results" > /dev/null
+python3 "$root/docs/make/visibility_scenes.py" "$results" > /dev/null
 cp "$root/tools/render/scenes/hidden-grace.json" "$results"
 
 table=$results/table.md
@@ -37,9 +37,9 @@ for scene in $scenes; do
         samplers+=(portals portals:uniform "mis(portals,cosine)")
     fi
     "$bench" measure "$results/$scene.json" "$data" "${POINTS:-1000}" "${samplers[@]}" |
-        sed "s/^/| $scene /; s|$local|local:1MB|; s|$places|places:4MB|; s|file:.*-portals\([14]\).acdf|places-portals:\1MB|" >> "$table"
+        sed "s/^/| $scene /; s|$local|local:1MB|; s|$places|visibility:4MB|; s|file:.*-portals\([14]\).acdf|visibility-portals:\1MB|" >> "$table"
 done
-"$root/docs/make/put_table.sh" places < "$table"
+"$root/docs/make/put_table.sh" visibility_sums < "$table"
 
 acdf=${ACDF:-$root/build/release/tools/acdf}
 {
@@ -58,10 +58,10 @@ acdf=${ACDF:-$root/build/release/tools/acdf}
             "| \($scene) | `\(.sampler)` | \(if .resolved then (.equal_samples_gain.value | short) else "unsure" end) | " +
             "\(if .resolved then (.equal_time_gain.value | short) else "unsure" end) | \(.bias_standard_errors | short) |"' \
             "$results/$scene-pictures/render.json" |
-            sed "s|$local|local:1MB|; s|$places|places:4MB|; s|file:.*-portals4.acdf|places-portals:4MB|"
+            sed "s|$local|local:1MB|; s|$places|visibility:4MB|; s|file:.*-portals4.acdf|visibility-portals:4MB|"
     done
 } > "$results/pictures.md"
-"$root/docs/make/put_table.sh" places_pictures < "$results/pictures.md"
+"$root/docs/make/put_table.sh" visibility_pictures < "$results/pictures.md"
 
 # Gains of both tables, of the files of 4 MB alone.
 "$root/docs/make/visibility_summary.sh" "$table" "$results/pictures.md" | "$root/docs/make/put_table.sh" visibility_summary
