@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # pictures.sh DATA [NAME...]: the pictures of README.md and of the pages, into docs/figures. DATA holds probes/ and brdfs/.
-# Names: noise local_file brdf render sweep plot, which are all of them without; and places, which needs the files that
-# visibility.sh leaves in RESULTS (default: build/places). ACDF names the program (default:
+# Names: noise local_file brdf render sweep plot, which are all of them without; and visibility, which needs the files that
+# visibility.sh leaves in RESULTS (default: build/visibility). ACDF names the program (default:
 # build/release/tools/acdf). Needs oiiotool, jq and, for `sweep`, chromium; tools/packages.txt lists them.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -9,7 +9,7 @@ data=$(cd "${1:?usage: docs/make/pictures.sh DATA [NAME...]}" && pwd)
 shift
 acdf=${ACDF:-$root/build/release/tools/acdf}
 figures=$root/docs/figures
-results=${RESULTS:-$root/build/places}
+results=${RESULTS:-$root/build/visibility}
 work=$(mktemp -d)
 trap 'rm -rf -- "$work"' EXIT
 
@@ -114,13 +114,13 @@ equal_time() {
         shown+=("$work/panel-$i.png")
         i=$((i + 1))
     done
-    side_by_side "places-$scene" "${shown[@]}"
+    side_by_side "visibility-$scene" "${shown[@]}"
 }
 
 # A room at equal time.
-places() {
-    equal_time room "file:$results/room-local.acdf=local:1MB" portals=portals visibility:32x16=visibility \
-        "file:$results/room-places.acdf=places:4MB"
+visibility() {
+    equal_time room "file:$results/room-local.acdf=local:1MB" portals=portals visibility-cache:32x16=visibility-cache \
+        "file:$results/room-visibility.acdf=visibility:4MB"
 }
 
 pictures=("$@")

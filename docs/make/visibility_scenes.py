@@ -123,7 +123,7 @@ def main():
         scene = {"description": make.__doc__.split("\n")[0], "camera": camera, "image": {"width": 64, "height": 48},
                  "light": {"probe": probe},
                  "objects": [{"mesh": {"file": str(folder / f"{name}.obj")}, "brdf": "lambert:albedo=0.6"}],
-                 "samples": 16, "samplers": ["local:1MB", "places:4MB", "full-cdf", "cosine", "mis(local:1MB,cosine)"]}
+                 "samples": 16, "samplers": ["local:1MB", "visibility:4MB", "full-cdf", "cosine", "mis(local:1MB,cosine)"]}
         if mesh.portals:
             scene["portals"] = mesh.portals
         (folder / f"{name}.json").write_text(json.dumps(scene, indent=1) + "\n")

@@ -1,4 +1,4 @@
-// Files of places at the points that a camera sees, without the noise of pictures (docs/visibility.md):
+// Files of places at the points that a camera sees, without the noise of pictures (docs/places.md):
 //
 //   bench_places make SCENE DATA local|places|portals BYTES OUT    a file as `acdf render` makes it for the scene
 //   bench_places measure SCENE DATA POINTS SAMPLER...      rows of a table, the first is what others are compared

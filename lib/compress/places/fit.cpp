@@ -15,7 +15,7 @@
 namespace acdf::compress {
 namespace {
 
-/// Splits of tiles that cells tell apart: more of them and there are fewer cells (docs/visibility.md).
+/// Splits of tiles that cells tell apart: more of them and there are fewer cells (docs/places.md).
 constexpr std::uint32_t kColumns = 127;
 /// The same beside portals, through which most samples are drawn: cells that know these are worth more.
 constexpr std::uint32_t kColumnsBesidePortals = 31;

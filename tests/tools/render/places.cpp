@@ -1,5 +1,5 @@
-// Files of places held to sums over all texels, at what a camera sees and anywhere: docs/make/visibility.sh does
-// the same with real probes.
+// Files of places held to sums over all texels, at what a camera sees and anywhere: docs/make/places.sh does the
+// same with real probes.
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
 #include "tests/tools/render/scenes.h"
