@@ -62,7 +62,7 @@ local_file() {
 
 # The lobe of one BRDF file for two views.
 brdf() {
-    "$acdf" brdf "$data/brdfs/nickel.binary" -o "$work/nickel.acdf" --force --quiet
+    "$acdf" brdf "$data/brdfs/nickel.binary" --budget 64KiB -o "$work/nickel.acdf" --force --quiet
     "$acdf" plot "$work/nickel.acdf" -o "$work/1.png" --view 30 --width 512 --range 1e-4:100 --force --quiet
     "$acdf" plot "$work/nickel.acdf" -o "$work/2.png" --view 75 --width 512 --range 1e-4:100 --force --quiet
     side_by_side brdf "$work"/[12].png
@@ -117,10 +117,8 @@ equal_time() {
     side_by_side "visibility-$scene" "${shown[@]}"
 }
 
-# A room at equal time, and the cells of its visibility.
+# A room at equal time.
 visibility() {
-    "$acdf" plot "$results/room-visibility.acdf" --scene "$results/room.obj" --from=-2.6,-3.4,1.9 --to 1.2,2,0.6 --force --quiet \
-        -o "$figures/visibility-cells.png"
     equal_time room "file:$results/room-local.acdf=local:1MB" portals=portals visibility-cache:32x16=visibility-cache \
         "file:$results/room-visibility.acdf=visibility:4MB"
 }

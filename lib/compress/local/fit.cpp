@@ -1,4 +1,5 @@
-// Tiles, then curves within them at one price a byte, then a row of probabilities for each bin: docs/local.md.
+// Tiles, then curves within them at one price a byte, then a row of probabilities for each bin:
+// docs/notes/local-method.md.
 #include "compress/local/fit.h"
 
 #include "compress/fit/shared.h"
