@@ -76,10 +76,10 @@ render() {
     side_by_side render "$work"/{variance,gain}.png
 }
 
-# The top of a sweep's page.
+# A sweep's page down to its last plot, as wide as a column of text, so that it can be read there.
 sweep() {
     (cd "$data/probes" && "$acdf" sweep noon_grass_1k.hdr -o "$work/sweep" --force --quiet > /dev/null)
-    chromium --headless --no-sandbox --disable-gpu --disable-background-networking --hide-scrollbars --window-size=1100,1000 \
+    chromium --headless --no-sandbox --disable-gpu --disable-background-networking --hide-scrollbars --window-size=840,2500 \
         --user-data-dir="$work/profile" --screenshot="$figures/sweep.png" "file://$work/sweep/report.html" 2> "$work/log"
 }
 
