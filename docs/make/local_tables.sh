@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Makes the tables of local files in docs/accuracy.md from a folder of probes: docs/make/local_tables.sh PROBES [ACDF]
-# TABLES="sizes rivals bins tiles paper" chooses among them.
+# Makes the tables of docs/appendix/accuracy-local.md from a folder of probes: docs/make/local_tables.sh PROBES [ACDF]
+# TABLES="sizes baselines bins tiles paper" chooses among them.
 set -euo pipefail
 probes=$1
 acdf=${2:-build/release/tools/acdf}
-tables=${TABLES:-sizes rivals bins tiles paper}
+tables=${TABLES:-sizes baselines bins tiles paper}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -52,7 +52,7 @@ sizes() {
     echo "$line | |"
 }
 
-rivals() {
+baselines() {
     echo "| probe | ours, 1 MB | full CDF | RIS, 32 candidates | 512 tiles × cosine on the fly | cosine hemisphere |"
     echo "|---|---|---|---|---|---|"
     while read -r name file projection; do

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""company_exact.py DATA: what files for a company are worth, by summation over texels: the relative variance of an
+"""mis_exact.py DATA: what files made for an MIS partner are worth, by summation over texels: the relative variance of an
 estimate of one sample of the light and one of the cosine, mean over the pixels of hidden-grace.json (16 x 12 of them)
 with nothing hidden and behind its wall, and over 400 random normals. DATA holds probes/; ACDF names the program
 (default: build/release/tools/acdf). Maps are resized to 256 x 128 by oiiotool. Needs numpy."""
@@ -15,9 +15,9 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ACDF = os.environ.get("ACDF", str(ROOT / "build/release/tools/acdf"))
 PROBES = ["venice_sunset_1k.hdr", "city.exr", "noon_grass_1k.hdr"]
-FILES = ["env:64KiB", "env:64KiB --with mean", "env:64KiB --with cosine", "env:64KiB --with cosine --scene",
-         "env:64KiB --with cosine --heuristic power --scene", "local:1MB", "local:1MB --with cosine",
-         "local:1MB --with cosine --heuristic power"]
+FILES = ["env:64KiB", "env:64KiB --mis mean", "env:64KiB --mis cosine", "env:64KiB --mis cosine --scene",
+         "env:64KiB --mis cosine --heuristic power --scene", "local:1MB", "local:1MB --mis cosine",
+         "local:1MB --mis cosine --heuristic power"]
 W, H = 256, 128
 
 
@@ -152,5 +152,5 @@ def main(data):
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
-        sys.exit("usage: docs/make/company_exact.py DATA")
+        sys.exit("usage: docs/make/mis_exact.py DATA")
     main(sys.argv[1])

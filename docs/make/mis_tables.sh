@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# company_tables.sh DATA [SIZE [SEEDS]]: the tables of docs/accuracy.md about two samples a point, of the light and of the
+# mis_tables.sh DATA [SIZE [SEEDS]]: the tables of docs/appendix/accuracy-mis.md about two samples a point, of the light and of the
 # cosine, in the scene of hidden-grace.json. DATA holds probes/. ACDF names the program (default: build/release/tools/acdf).
 # Maps are resized to 256 x 128 by oiiotool: the ideal rows look at every texel at every point.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-data=$(cd "${1:?usage: docs/make/company_tables.sh DATA [SIZE [SEEDS]]}" && pwd)
+data=$(cd "${1:?usage: docs/make/mis_tables.sh DATA [SIZE [SEEDS]]}" && pwd)
 size=${2:-16x12}
 seeds=${3:-256}
 acdf=${ACDF:-$root/build/release/tools/acdf}
@@ -12,11 +12,11 @@ probes=${PROBES:-venice_sunset_1k.hdr city.exr noon_grass_1k.hdr}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-samplers=("full-cdf" "mis(full-cdf,cosine)" "mis-compensated" "mis(env:64KiB,cosine)" "mis(env:64KiB --with mean,cosine)"
-    "mis(env:64KiB --with cosine,cosine)" "mis(env:64KiB --with cosine --scene,cosine)" "mis(ideal,cosine)"
-    "mis(ideal --with cosine,cosine)" "mis(local:1MB,cosine)" "mis(local:1MB --with cosine,cosine)" "local:1MB"
-    "mis-power(mis-compensated)" "mis-power(local:1MB,cosine)" "mis-power(local:1MB --with cosine,cosine)"
-    "mis-power(local:1MB --with cosine --heuristic power,cosine)")
+samplers=("full-cdf" "mis(full-cdf,cosine)" "mis-compensated" "mis(env:64KiB,cosine)" "mis(env:64KiB --mis mean,cosine)"
+    "mis(env:64KiB --mis cosine,cosine)" "mis(env:64KiB --mis cosine --scene,cosine)" "mis(ideal,cosine)"
+    "mis(ideal --mis cosine,cosine)" "mis(local:1MB,cosine)" "mis(local:1MB --mis cosine,cosine)" "local:1MB"
+    "mis-power(mis-compensated)" "mis-power(local:1MB,cosine)" "mis-power(local:1MB --mis cosine,cosine)"
+    "mis-power(local:1MB --mis cosine --heuristic power,cosine)")
 samplers=("${samplers[@]/mis-power(mis-compensated)/mis-power(compensated,cosine)}")
 
 for probe in $probes; do
