@@ -84,7 +84,7 @@ def headline():
 - **Fast.** Sampling a 64 KiB file takes {span([small.ns, large.ns])} ns, {small.faster:.1f} times faster than a full-resolution CDF at 1024×512 and
   {large.faster:.1f} times at 4096×2048. File and tables made at load take {max(small.bytes, large.bytes) / 1e6:.2f} MB; the full CDF takes {small.full_bytes / 1e6:.1f} and {large.full_bytes / 1e6:.0f} MB
   ([times](docs/performance.md#environment-files)). A measured BRDF is sampled in {span([ns for ns, _ in single])} ns, {span([rgl / ns for ns, rgl in single], "{:.1f}")} times faster than by
-  its authors' sampler, and in {span(batch)} ns in batches with AVX-512 ([times](docs/performance.md#brdfs))."""
+  its authors' sampler. Batches take {span(batch)} ns with AVX-512 ([times](docs/performance.md#brdfs))."""
 
 
 def main():
