@@ -276,7 +276,7 @@ LocalEnvironmentView File::local() const noexcept {
                          description_->total,
                          description_->parameterization,
                          nullptr,
-                         company_,
+                         nullptr, // complete whatever the file is made for: to be used alone
                          tree_units_};
     local.company = company_;
     local.bins = bins_;
