@@ -1,7 +1,7 @@
-// three-gpu-pathtracer with an .acdf file in place of the tables that it makes of the environment: the same picture from
-// smaller tables. Written for three-gpu-pathtracer 0.0.26, whose shader it extends by two functions.
+// three-gpu-pathtracer with an .acdf file in place of the tables that it makes of the environment: the same picture, with
+// as many samples. Written for three-gpu-pathtracer 0.0.26, whose shader it extends by two functions.
 //
-//   const file = reader.open(bytes);                       // of the map that the path tracer shows: acdf env sky.hdr
+//   const file = reader.open(bytes);                       // of the same map: acdf env sky.hdr --filter bilinear
 //   const pathTracer = new WebGLPathTracer(renderer);
 //   const stop = drawEnvironmentFrom(pathTracer, file);    // stop() gives back what was there
 //   pathTracer.setScene(scene, camera);                    // scene.environment stays the map itself
