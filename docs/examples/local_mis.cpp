@@ -1,5 +1,5 @@
 // Light and BRDF samples combined, as a path tracer does at every vertex: irradiance on a plane under a ball, lit
-// by a probe. Made for files of `acdf local PROBE --with cosine`; others work, too. Usage: local_mis PROBE.pfm
+// by a probe. Made for files of `acdf local PROBE --mis cosine`; others work, too. Usage: local_mis PROBE.pfm
 // FILE.acdf
 #include <acdf/reader.h>
 
