@@ -17,7 +17,7 @@ namespace pbrt {
 
 /// Samples directions of light from a file of `acdf env` or `acdf local`, visibility cells included. All directions
 /// are in the light's own space. pdfs are in sr^-1. Thread-safe once open.
-class AcdfLight {
+class AcdfSampler {
 public:
     /// Opens the file; ends pbrt with a message where that fails. An empty path leaves the light closed.
     void Open(const std::string& path) {

@@ -106,7 +106,7 @@ private:
     Float sceneRadius = 1;
     int mediumInterface = 0;
     PiecewiseConstant2D distribution;
-    AcdfLight acdf;
+    AcdfSampler acdf;
 };
 
 struct ParameterDictionary {
