@@ -10,7 +10,7 @@ data=$(cd "${1:?usage: docs/make/accuracy.sh DATA [SECTION...]}" && pwd)
 shift
 acdf=${ACDF:-$root/build/release/tools/acdf}
 results=${RESULTS:-$root/build/accuracy}
-sections=(e1 e1_fits e1_sizes e1_options e1_ratio octahedral e2 e3 e3_render e4_sizes e4_baselines e4_paper e4_bins e4_tiles e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden mis mis_exact mis_render baselines building summary)
+sections=(e1 e1_fits e1_sizes e1_options e1_ratio octahedral e2 e3 e3_render e4_sizes e4_baselines e4_paper e4_bins e4_tiles e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden partner partner_exact partner_draws baselines building summary)
 mkdir -p "$results"
 
 # Definitions for jq: rounding to three digits, and a value with its interval.
@@ -142,14 +142,14 @@ hidden() {
 
 # ---- files for an MIS partner ----------------------------------------------------------------------------------------
 
-# Everything that `acdf render` has for diffuse surfaces, beside files made for cosine samples as their MIS partner.
-mis_samplers=('full-cdf' 'mis(full-cdf,cosine)' 'mis-compensated' 'tiles:32x16' 'ris:32' 'env:64KiB' 'local:1MB'
+# Everything that `acdf render` has for diffuse surfaces, beside files for an MIS partner of the cosine.
+partner_samplers=('full-cdf' 'mis(full-cdf,cosine)' 'mis-compensated' 'tiles:32x16' 'ris:32' 'env:64KiB' 'local:1MB'
     'mis(local:1MB,cosine)' 'mis(4*local:1MB,cosine)' 'mis(env:64KiB --mis cosine --scene,cosine)'
     'mis(local:1MB --mis cosine,cosine)' 'mis(auto:local:1MB --mis cosine,cosine)')
-mis() { scenes mis 24x18 20 e4-grace e4-stpeters e4-beach hidden-grace; }
+partner() { scenes partner 24x18 20 e4-grace e4-stpeters e4-beach hidden-grace; }
 
-mis_exact() { ACDF=$acdf "${PYTHON:-/usr/bin/python3}" "$root/docs/make/mis_exact.py" "$data"; }
-mis_render() { ACDF=$acdf "$root/docs/make/mis_tables.sh" "$data" 12x9 24; }
+partner_exact() { ACDF=$acdf "${PYTHON:-/usr/bin/python3}" "$root/docs/make/partner_exact.py" "$data"; }
+partner_draws() { ACDF=$acdf "$root/docs/make/partner_tables.sh" "$data" 12x9 24; }
 
 # ---- baselines on the light itself -----------------------------------------------------------------------------------
 

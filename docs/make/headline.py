@@ -89,8 +89,8 @@ def headline():
 
 def main():
     text = README.read_text(encoding="utf-8")
-    made, blocks = re.subn(r"(<!-- headline -->\n).*?(<!-- /headline -->)", lambda m: m[1] + headline() + "\n" + m[2], text, flags=re.S)
-    if blocks != 1:
+    made, count = re.subn(r"(<!-- headline -->\n).*?(<!-- /headline -->)", lambda m: m[1] + headline() + "\n" + m[2], text, flags=re.S)
+    if count != 1:
         sys.exit("headline.py: README.md has no headline marks, or more than one pair")
     if made == text:
         return 0

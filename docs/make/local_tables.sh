@@ -25,7 +25,7 @@ build() {
     local name=$1 file=$2 projection=$3
     shift 3
     "$acdf" local "$probes/$file" --projection "$projection" --shape small -o "$work/$name.acdf" --force --quiet "$@" > /dev/null
-    "$acdf" measure "$work/$name.acdf" --against "$probes/$file" --projection "$projection" --quiet --json ${rivals:+--rivals} \
+    "$acdf" measure "$work/$name.acdf" --against "$probes/$file" --projection "$projection" --quiet --json ${baselines:+--baselines} \
         > "$work/$name.json"
 }
 
@@ -56,8 +56,8 @@ baselines() {
     echo "| probe | ours, 1 MB | full CDF | RIS, 32 candidates | 512 tiles × cosine on the fly | cosine hemisphere |"
     echo "|---|---|---|---|---|---|"
     while read -r name file projection; do
-        rivals=1 build "$name" "$file" "$projection" --budget 1MB
-        jq -r --arg n "$name" '"| " + $n + " | " + ([.relative_variance, (.rivals | .full_cdf, .resampling_32, .tiling_512, .cosine | .relative_variance)] | map(. * 1e5 | round / 1e5 | tostring) | join(" | ")) + " |"' "$work/$name.json"
+        baselines=1 build "$name" "$file" "$projection" --budget 1MB
+        jq -r --arg n "$name" '"| " + $n + " | " + ([.relative_variance, (.baselines | .full_cdf, .resampling_32, .tiling_512, .cosine | .relative_variance)] | map(. * 1e5 | round / 1e5 | tostring) | join(" | ")) + " |"' "$work/$name.json"
     done <<< "$list"
 }
 

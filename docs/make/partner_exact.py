@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""mis_exact.py DATA: what files made for an MIS partner are worth, by summation over texels: the relative variance of an
+"""partner_exact.py DATA: what files for an MIS partner are worth, by summation over texels: the relative variance of an
 estimate of one sample of the light and one of the cosine, mean over the pixels of hidden-grace.json (16 x 12 of them)
 with nothing hidden and behind its wall, and over 400 random normals. DATA holds probes/; ACDF names the program
 (default: build/release/tools/acdf). Maps are resized to 256 x 128 by oiiotool. Needs numpy."""
@@ -108,11 +108,11 @@ def density(file, normal=None):
     return np.array([float(v) for v in text.split()])
 
 
-def rows(image, light, work, places):
+def rows(image, light, work, point_sets):
     compensated = np.maximum(0, light - light @ OMEGA / (4 * np.pi))
     compensated /= compensated @ OMEGA
     for name, power in (("compensated full table", False), ("compensated full table, power heuristic", True)):
-        yield name, [points.variance(light, compensated, power) for points in places]
+        yield name, [points.variance(light, compensated, power) for points in point_sets]
     for name in FILES:
         kind, _, options = name.partition(":")
         budget, *options = options.replace("--scene", "--scene " + work + "/scene.txt").split()
@@ -121,17 +121,17 @@ def rows(image, light, work, places):
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         if kind == "env":
             p = density(file)
-            yield f"`{name}`", [points.variance(light, p, "power" in name) for points in places]
+            yield f"`{name}`", [points.variance(light, p, "power" in name) for points in point_sets]
             continue
-        different, which = np.unique(places[0].normals, axis=0, return_inverse=True)
+        different, which = np.unique(point_sets[0].normals, axis=0, return_inverse=True)
         p = np.array([density(file, n) for n in different])[which.ravel()]
-        yield f"`{name}`", [points.variance(light, p, "power" in name) for points in places[:2]] + [np.nan]
+        yield f"`{name}`", [points.variance(light, p, "power" in name) for points in point_sets[:2]] + [np.nan]
 
 
 def main(data):
     normals = np.random.default_rng(1).normal(size=(400, 3))
     open_scene, behind = scene()
-    places = [open_scene, behind, Points(normals / np.linalg.norm(normals, axis=1)[:, None], np.ones(400))]
+    point_sets = [open_scene, behind, Points(normals / np.linalg.norm(normals, axis=1)[:, None], np.ones(400))]
     table = {}
     with tempfile.TemporaryDirectory() as work:
         np.savetxt(work + "/scene.txt", open_scene.normals, fmt="%.9g")
@@ -139,7 +139,7 @@ def main(data):
             image = work + "/" + probe + ".exr"
             subprocess.run(["oiiotool", f"{data}/probes/{probe}", "--ch", "R,G,B", "--resize:filter=box", f"{W}x{H}",
                             "-d", "float", "-o", image], check=True, stdout=subprocess.DEVNULL)
-            for name, figures in rows(image, luminance(image), work, places):
+            for name, figures in rows(image, luminance(image), work, point_sets):
                 table.setdefault(name, []).append(figures)
     for i, what in enumerate(("nothing hidden", "behind the wall", "all normals")):
         print(f"| one sample of each, {what} |", " | ".join(probe.split(".")[0] for probe in PROBES), "|")
@@ -152,5 +152,5 @@ def main(data):
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
-        sys.exit("usage: docs/make/mis_exact.py DATA")
+        sys.exit("usage: docs/make/partner_exact.py DATA")
     main(sys.argv[1])

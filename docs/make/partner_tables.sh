@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# mis_tables.sh DATA [SIZE [SEEDS]]: the tables of docs/appendix/accuracy-mis.md about two samples a point, of the light and of the
+# partner_tables.sh DATA [SIZE [SEEDS]]: the tables of docs/appendix/accuracy-mis.md about two samples a point, of the light and of the
 # cosine, in the scene of hidden-grace.json. DATA holds probes/. ACDF names the program (default: build/release/tools/acdf).
 # Maps are resized to 256 x 128 by oiiotool: the ideal rows look at every texel at every point.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-data=$(cd "${1:?usage: docs/make/mis_tables.sh DATA [SIZE [SEEDS]]}" && pwd)
+data=$(cd "${1:?usage: docs/make/partner_tables.sh DATA [SIZE [SEEDS]]}" && pwd)
 size=${2:-16x12}
 seeds=${3:-256}
 acdf=${ACDF:-$root/build/release/tools/acdf}
