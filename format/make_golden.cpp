@@ -3,13 +3,13 @@
 //   make_golden OUTDIR
 //
 // The files in tests/golden/ were made by it and are frozen with each release: a reader of any later version
-// must sample the same samples from them, bit for bit. (One of them, `untilted`, has the curves that the variance fit
-// of environments once made. They stay legal, and nothing makes them any more.) A line of the text is
+// must sample the same samples from them, bit for bit. (One of them, `untilted`, has the curves that the variance
+// fit of environments once made. They stay legal, and nothing makes them any more.) A line of the text is
 //
 //   u0 u1  x y z  pdf
 //
-// in hexadecimal floating point (C99 %a), of a local environment with the normal before it (where it has visibility cells
-// with position and normal), of a BRDF with wo. None of the files is symmetric, so that a mirrored, turned or
+// in hexadecimal floating point (C99 %a), of a local environment with the normal before it (where it has visibility
+// cells with position and normal), of a BRDF with wo. None of the files is symmetric, so that a mirrored, turned or
 // transposed frame shows.
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
@@ -252,15 +252,16 @@ Description local_axes(Description d, const std::vector<AxisDescription>& normal
     return d;
 }
 
-/// Four visibility, told apart by position and, in the last two, by the normal's z; two of them mixed at each border.
-/// `regions`: the first and the last tell the first split of tiles apart, those between them the second.
+/// Four visibility, told apart by position and, in the last two, by the normal's z; two of them mixed at each
+/// border. `regions`: the first and the last tell the first split of tiles apart, those between them the second.
 Chunk visibility_chunk(bool regions) {
     Chunk chunk{ACDF_CHUNK_VISIBILITY, {}};
     const AcdfVisibility header = {
         3, 4, 1, regions, {-1, -2, 0}, {3, 2, 4}, {{0, 0, 1, 0.5f}, {1, 0, 0, 0}, {0, 1, 0, 0}}}; // y up, moved
-    const AcdfVisibilitySplit splits[] = {{1.0f, 0.25f, 0 | ACDF_VISIBILITY_ROW << 3, 1},
-                                     {0.5f, 0.5f, 1 | (ACDF_VISIBILITY_ROW | 1) << 3, 2},
-                                     {0.25f, 0.125f, 5 | (ACDF_VISIBILITY_ROW | 2) << 3, ACDF_VISIBILITY_ROW | 3}};
+    const AcdfVisibilitySplit splits[] = {
+        {1.0f, 0.25f, 0 | ACDF_VISIBILITY_ROW << 3, 1},
+        {0.5f, 0.5f, 1 | (ACDF_VISIBILITY_ROW | 1) << 3, 2},
+        {0.25f, 0.125f, 5 | (ACDF_VISIBILITY_ROW | 2) << 3, ACDF_VISIBILITY_ROW | 3}};
     const std::uint16_t columns[] = {0, ACDF_NO_COLUMN, ACDF_NO_COLUMN, 0}, set_of_row[] = {0, 1, 1, 0};
     const std::uint8_t rows[] = {240, 30,  200, 200, 255, 7,
                                  17,  100, 128, 90,  180, 44}; // mixture, light and odds of each

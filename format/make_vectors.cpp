@@ -126,7 +126,8 @@ const std::vector<std::vector<float>> kNormals = {{0, 0, 1},
                                                   {0, 0, 0},
                                                   {kNanF, 0, 1},
                                                   {1e-30f, 2e-30f, -1e-30f}};
-/// Of a file with visibility cells: in its cells, on their borders, at the bounds of all, outside, and not a number.
+/// Of a file with visibility cells: in its cells, on their borders, at the bounds of all, outside, and not a
+/// number.
 const std::vector<std::vector<float>> kPositions = {{0, 1, 0},    {-1, 1, 1.5f}, {0.2f, 1, 0.6f}, {0.6f, 2, 0.375f},
                                                     {2, 4, 2.5f}, {5, 1, 0},     {kNanF, 0, 1}};
 const std::vector<std::vector<float>> kViews = {{0, 0, 1},        {0.6f, 0, 0.8f},         {-0.48f, 0.64f, 0.6f},

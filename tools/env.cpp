@@ -4,11 +4,11 @@
 #include "input/probe/image_header.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
-#include "tools/cli/mis_options.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
+#include "tools/cli/mis_options.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
@@ -124,7 +124,8 @@ void EnvConversion::check_partner() const {
     for (const char* option : {"--shares", "--heuristic", "--scene"})
         if (alone && given(option)) throw CLI::ValidationError(option, "is for files with an MIS partner (--mis)");
     for (const char* option : {"--target-variance", "--max-weight"})
-        if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
+        if (!alone && given(option))
+            throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
     if (!alone && environment_.fit.fit != ACDF_FIT_VARIANCE)
         throw CLI::ValidationError("--mis", "is for --fit variance");
 }

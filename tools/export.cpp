@@ -1,5 +1,5 @@
-// acdf export: samples and densities of an environment, a local environment or a BRDF for shaders: functions in their
-// languages, and tables.
+// acdf export: samples and densities of an environment, a local environment or a BRDF for shaders: functions in
+// their languages, and tables.
 #include "shader/texts.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"

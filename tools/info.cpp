@@ -1,7 +1,7 @@
 // acdf info: what is inside a file, in a form for people or as JSON.
 #include "build/accuracy/cells.h"
-#include "build/text/partner.h"
 #include "build/text/format_names.h"
+#include "build/text/partner.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
@@ -153,10 +153,10 @@ Json local_json(const File& file) {
     report["cosine_share"] = local.cosine_share;
     if (const AcdfVisibility* visibility = local.visibility.header)
         report["visibility"] = {{"cells", visibility->split_count + 1},
-                            {"rows", visibility->row_count},
-                            {"columns", visibility->column_count},
-                            {"low", visibility->low},
-                            {"high", visibility->high}};
+                                {"rows", visibility->row_count},
+                                {"columns", visibility->column_count},
+                                {"low", visibility->low},
+                                {"high", visibility->high}};
     if (const AcdfPortals* portals = local.portals.header)
         report["portals"] = {{"count", portals->portal_count},
                              {"maps", portals->map_count},
@@ -249,9 +249,10 @@ std::string local_text(const Json& local) {
                                          " rows, " + text_of(local["bright_tiles"]) + " bright tiles" +
                                          (local.contains("shape") ? "; shape " + text_of(local["shape"]) : "");
     const std::string visibility = local.contains("visibility")
-                                   ? "; " + text_of(local["visibility"]["cells"]) + " visibility cells from " +
-                                         text_of(local["visibility"]["low"]) + " to " + text_of(local["visibility"]["high"])
-                                   : "";
+                                       ? "; " + text_of(local["visibility"]["cells"]) + " visibility cells from " +
+                                             text_of(local["visibility"]["low"]) + " to " +
+                                             text_of(local["visibility"]["high"])
+                                       : "";
     const std::string portals =
         local.contains("portals")
             ? "; " + text_of(local["portals"]["count"]) + " portals, " + text_of(local["portals"]["maps"]) +
@@ -263,7 +264,8 @@ std::string local_text(const Json& local) {
 std::string partner_line(const Json& partner) {
     return text_of(partner["kind"]) + " (" + text_of(partner["heuristic"]) + " heuristic, " +
            number(100.0 * partner["share"].get<double>()) + " % of samples from this file); recommended share " +
-           number(partner["recommended_light_share"]) + ", from " + number(partner["least_recommended_light_share"]) + " to " +
+           number(partner["recommended_light_share"]) + ", from " +
+           number(partner["least_recommended_light_share"]) + " to " +
            number(partner["largest_recommended_light_share"]) + "; not to be used alone";
 }
 

@@ -5,12 +5,12 @@
 #include "input/probe/image_header.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
-#include "tools/cli/mis_options.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
 #include "tools/cli/mesh_visibility.h"
+#include "tools/cli/mis_options.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/portal_check.h"
@@ -132,7 +132,8 @@ void LocalConversion::check() {
     for (const char* option : {"--shares", "--heuristic"})
         if (alone && given(option)) throw CLI::ValidationError(option, "is for files with an MIS partner (--mis)");
     for (const char* option : {"--no-sharing", "--cosine-share", "--visibility", "--max-weight"})
-        if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
+        if (!alone && given(option))
+            throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
     if (portals_.given() && !visibility_) throw CLI::ValidationError("--portal", "is for --visibility");
     if (volume_ && !visibility_) throw CLI::ValidationError("--volume", "is for --visibility");
     if (local_.shape == builder::LocalShape::fast)
@@ -216,10 +217,11 @@ std::string summary_of(const builder::Local& result) {
     const builder::LocalAccuracy& a = result.accuracy;
     char text[320];
     if (a.combined) {
-        std::snprintf(text, sizeof text,
-                      "with its MIS partner, relative variance %.4g a sample over %u normals: %.3g times less than the "
-                      "probe's own CDF with it (%.4g); not to be used alone",
-                      a.relative_variance, a.lit_normals, gain(result), a.relative_variance_full_cdf);
+        std::snprintf(
+            text, sizeof text,
+            "with its MIS partner, relative variance %.4g a sample over %u normals: %.3g times less than the "
+            "probe's own CDF with it (%.4g); not to be used alone",
+            a.relative_variance, a.lit_normals, gain(result), a.relative_variance_full_cdf);
         return text;
     }
     std::snprintf(text, sizeof text,

@@ -87,7 +87,8 @@ void sample_local(const File& file, const SampleArguments& options, Output& outp
     if (!options.at.empty()) throw Failure(options.file + ": a local environment has no --at; give --normal X,Y,Z");
     const AcdfLocalPoint point = file.local().at(chosen_normal(options.file, options.normal).data());
     if (point.what == ACDF_LOCAL_NOTHING)
-        throw Failure(options.file + ": no light reaches this normal, so there is nothing to sample; choose another");
+        throw Failure(options.file +
+                      ": no light reaches this normal, so there is nothing to sample; choose another");
     const LocalBatch view(file.local());
     write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
         view.sample(point, u, count, samples);
@@ -113,7 +114,8 @@ void sample_table(const File& file, const SampleArguments& options, Output& outp
                       ", not 2; use --sequence random");
     const std::vector<std::uint32_t> bin = chosen_bin(options.file, view, options.at);
     if (!(view.share(bin.data()) > 0.0))
-        throw Failure(options.file + ": this bin is empty, so there is nothing to sample; choose another with --at");
+        throw Failure(options.file +
+                      ": this bin is empty, so there is nothing to sample; choose another with --at");
     measure::Sequence sequence(options.sequence, options.count, options.seed);
     output.write(point_columns("u", n) + point_columns("x", n) + "pdf\n");
     write_samples(options, [&](std::size_t count) {

@@ -5,12 +5,12 @@
 #include "input/sha256.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
-#include "tools/cli/mis_options.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
 #include "tools/cli/messages.h"
+#include "tools/cli/mis_options.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
@@ -139,7 +139,8 @@ input::NpyArray read_other(TableArguments& options) {
             throw CLI::ValidationError(option, "is for files with an MIS partner (--mis)");
     if (options.other.empty()) return {};
     for (const char* option : {"--max-weight", "--target-variance"})
-        if (options.given(option)) throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
+        if (options.given(option))
+            throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
     input::NpyArray other = input::read_npy(options.other, options.input);
     options.table.mis.kind = ACDF_PARTNER_TABLE;
     options.table.other = {other.values.data(), builder::Number::float32, other.shape, {}};

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# accuracy.sh DATA [SECTION...]: writes the tables of docs/accuracy.md, and that of building in docs/performance.md, from the
-# programs' output.
+# accuracy.sh DATA [SECTION...]: writes the tables of docs/appendix/accuracy-*.md, the summary in docs/accuracy.md, and the table
+# in docs/appendix/performance-building.md, from the programs' output.
 # DATA holds probes/ and brdfs/. ACDF names the program (default: build/release/tools/acdf). Without sections all are
 # made, which takes an hour on two cores. Each table stands between <!-- NAME --> and <!-- /NAME --> in a page; what
 # the summary needs of the others is kept in RESULTS (default: build/accuracy).
@@ -16,7 +16,7 @@ mkdir -p "$results"
 # Definitions for jq: rounding to three digits, and a value with its interval.
 jq_lib='def sig: if . == null then "–" elif . == 0 then "0" else . as $x | ((fabs|log10|floor) - 2) as $e | (if $e < 0 then (($x * pow(10; -$e) | round) / pow(10; -$e)) else (($x / pow(10; $e) | round) * pow(10; $e)) end) | tostring end;
 def interval: "\(.value|sig) (\(.low|sig)–\(.high|sig))";
-def told($figure): if .resolved then $figure | interval else "unsure" end;
+def shown($figure): if .resolved then $figure | interval else "unsure" end;
 def percent: "\(. * 1000 | round / 10) %";
 def size: if . == 0 then "–" elif . >= 1048576 then "\(. / 104857.6 | round / 10) MiB" else "\(. / 102.4 | round / 10) KiB" end;'
 
@@ -28,7 +28,7 @@ e1() {
     echo "|---|---|---|---|---|---|"
     while IFS='|' read -r text options; do
         # shellcheck disable=SC2086
-        line=$("$acdf" env "$probe" --projection angular --domain latlong -o "$results/e1.acdf" --force --quiet --json $options |
+        line=$("$acdf" env "$probe" --projection angular --domain latlong --filter nearest -o "$results/e1.acdf" --force --quiet --json $options |
             jq -r "$jq_lib"' " \(.bytes) | \(.cells) | \(.relative_variance|sig) | \(.kl_divergence|sig) | \(.max_weight|sig) |"')
         echo "| $text |$line"
     done <<'ROWS'
@@ -85,7 +85,7 @@ render() {
     echo
     echo "| sampler | memory | above the horizon: mean, worst pixel | relative variance | median | gain, equal samples | gain, equal time | Sobol: relative variance | gain, equal samples |"
     echo "|---|---|---|---|---|---|---|---|---|"
-    jq -r "$jq_lib"' (.sobol.samplers | map({(.sampler): .}) | add) as $sobol | .samplers[] | "| `\(.sampler)` | \(.bytes|size) | \(.share_above_horizon|percent), \(.least_share_above_horizon|percent) | \(told(.relative_variance)) | \(.relative_variance_median|sig) | \(told(.equal_samples_gain)) | \(told(.equal_time_gain)) | \($sobol[.sampler] | told(.relative_variance)) | \($sobol[.sampler] | told(.equal_samples_gain)) |"' \
+    jq -r "$jq_lib"' (.sobol.samplers | map({(.sampler): .}) | add) as $sobol | .samplers[] | "| `\(.sampler)` | \(.bytes|size) | \(.share_above_horizon|percent), \(.least_share_above_horizon|percent) | \(shown(.relative_variance)) | \(.relative_variance_median|sig) | \(shown(.equal_samples_gain)) | \(shown(.equal_time_gain)) | \($sobol[.sampler] | shown(.relative_variance)) | \($sobol[.sampler] | shown(.equal_samples_gain)) |"' \
         "$results/$1.json"
 }
 e3_render() {
@@ -136,7 +136,7 @@ hidden() {
     echo
     echo "| sampler | relative variance | gain, equal samples | gain, equal time |"
     echo "|---|---|---|---|"
-    jq -r "$jq_lib"' .nothing_hidden.samplers[] | "| `\(.sampler)` | \(told(.relative_variance)) | \(told(.equal_samples_gain)) | \(told(.equal_time_gain)) |"' \
+    jq -r "$jq_lib"' .nothing_hidden.samplers[] | "| `\(.sampler)` | \(shown(.relative_variance)) | \(shown(.equal_samples_gain)) | \(shown(.equal_time_gain)) |"' \
         "$results/hidden-grace.json"
 }
 

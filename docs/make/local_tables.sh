@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the tables of local files in docs/accuracy.md from a folder of probes: docs/make/local_tables.sh PROBES [ACDF]
+# Makes the tables of docs/appendix/accuracy-local.md from a folder of probes: docs/make/local_tables.sh PROBES [ACDF]
 # TABLES="sizes baselines bins tiles paper" chooses among them.
 set -euo pipefail
 probes=$1

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# partner_tables.sh DATA [SIZE [SEEDS]]: the tables of docs/accuracy.md about two samples a point, of the light and of the
+# partner_tables.sh DATA [SIZE [SEEDS]]: the tables of docs/appendix/accuracy-mis.md about two samples a point, of the light and of the
 # cosine, in the scene of hidden-grace.json. DATA holds probes/. ACDF names the program (default: build/release/tools/acdf).
 # Maps are resized to 256 x 128 by oiiotool: the ideal rows look at every texel at every point.
 set -euo pipefail

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# visibility.sh DATA [SCENE...]: writes the tables of docs/visibility.md: of sums at points, and of pictures of 16 x 12 pixels. DATA holds probes/; scenes: hidden-grace and those of
+# visibility.sh DATA [SCENE...]: writes the tables of docs/appendix/visibility.md: of sums at points, and of pictures of
+# 16 x 12 pixels; and the summary of both in docs/visibility.md. DATA holds probes/; scenes: hidden-grace and those of
 # docs/make/visibility_scenes.py. BENCH names the program (default: build/release/tests/bench/bench_visibility, of a build with
 # -DACDF_BUILD_BENCHMARKS=ON); POINTS is how many of those that the camera sees are asked (default: 1000). Files are left in
 # RESULTS (default: build/visibility), and used where they are there. A file takes minutes, and so do 1000 points.
@@ -16,7 +17,7 @@ cp "$root/tools/render/scenes/hidden-grace.json" "$results"
 
 table=$results/table.md
 {
-    echo "| scene | sampler | bytes | relative variance | less than local | all points, standard errors | each point | beyond 4 | lost |"
+    echo "| scene | sampler | bytes | relative variance | gain over local | z, all points | RMS z | points with \\|z\\| > 4 | lost |"
     echo "|---|---|---|---|---|---|---|---|---|"
 } > "$table"
 for scene in $scenes; do
@@ -42,7 +43,7 @@ done
 
 acdf=${ACDF:-$root/build/release/tools/acdf}
 {
-    echo "| scene | sampler | gain over local, equal samples | equal time | bias/se |"
+    echo "| scene | sampler | gain over local, equal samples | gain, equal time | z of the mean |"
     echo "|---|---|---|---|---|"
     for scene in $scenes; do
         local=file:$results/$scene-local.acdf visibility=file:$results/$scene-visibility.acdf
@@ -61,3 +62,6 @@ acdf=${ACDF:-$root/build/release/tools/acdf}
     done
 } > "$results/pictures.md"
 "$root/docs/make/put_table.sh" visibility_pictures < "$results/pictures.md"
+
+# Gains of both tables, of the files of 4 MB alone.
+"$root/docs/make/visibility_summary.sh" "$table" "$results/pictures.md" | "$root/docs/make/put_table.sh" visibility_summary

@@ -243,9 +243,9 @@ typedef struct AcdfBrightTile {
 
 /* Chunk COMP of a file that is not to be used alone: this, then `record_count` records (0, or one a bin). */
 typedef struct AcdfPartner {
-    uint32_t kind;           /* AcdfPartnerKind, not 0 */
-    uint32_t heuristic;      /* AcdfHeuristic */
-    float share;             /* of the samples, in (0, 1): what the fit was told that this file samples */
+    uint32_t kind;                 /* AcdfPartnerKind, not 0 */
+    uint32_t heuristic;            /* AcdfHeuristic */
+    float share;                   /* of the samples, in (0, 1): what the fit was told that this file samples */
     float recommended_light_share; /* in (0, 1]: of the samples that this file should sample, in the mean */
     uint32_t record_count;
     uint32_t reserved; /* 0 */
@@ -253,7 +253,7 @@ typedef struct AcdfPartner {
 
 typedef struct AcdfPartnerRecord {
     float recommended_light_share; /* of the bin, in (0, 1] */
-    float flux;              /* of local environments: irradiance of the bin over `total`; else 0 */
+    float flux;                    /* of local environments: irradiance of the bin over `total`; else 0 */
 } AcdfPartnerRecord;
 
 #ifndef ACDF_ENVIRONMENT_ONLY

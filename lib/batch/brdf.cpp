@@ -173,7 +173,7 @@ Status out_of_memory(std::size_t bytes) {
 
 void brdf_pdf_batch(const AcdfBrdf& brdf, const AcdfBrdfView& view, const float (*wi)[3], std::size_t count,
                     float* out, Instructions most) noexcept {
-    using Pdfs = void (*)(const BatchTable&, const AcdfBrdfView&, const float (*)[3], std::size_t, float*);
+    using Pdfs = void (*)(const BatchTable&, const AcdfBrdfView&, const float(*)[3], std::size_t, float*);
     if (const Pdfs pdfs = ACDF_BEST_OF(most, Pdfs{nullptr}, Pdfs{view_pdf_avx2}, Pdfs{view_pdf_avx512});
         pdfs && brdf.tables && brdf.tables->grid) {
         BatchTable table;
@@ -185,10 +185,10 @@ void brdf_pdf_batch(const AcdfBrdf& brdf, const AcdfBrdfView& view, const float 
 
 void brdf_sample_batch(const AcdfBrdf& brdf, const AcdfBrdfView& view, const double (*u)[2], std::size_t count,
                        DirectionSample* out, Instructions most) noexcept {
-    using Samples = void (*)(const BatchTable&, const AcdfBrdf&, const AcdfBrdfView&, const double (*)[2],
+    using Samples = void (*)(const BatchTable&, const AcdfBrdf&, const AcdfBrdfView&, const double(*)[2],
                              std::size_t, DirectionSample*);
-    if (const Samples samples = ACDF_BEST_OF(most, Samples{nullptr}, Samples{view_sample_avx2},
-                                             Samples{view_sample_avx512});
+    if (const Samples samples =
+            ACDF_BEST_OF(most, Samples{nullptr}, Samples{view_sample_avx2}, Samples{view_sample_avx512});
         samples && brdf.tables && brdf.tables->grid && brdf.tables->guesses && view.pair[0] + view.pair[1] > 0.0) {
         BatchTable table;
         add_runtime_tables(brdf, *brdf.tables, &table);
@@ -235,7 +235,7 @@ Status BrdfBatch::prepare(const BrdfView& view, BrdfBatch& out, Instructions mos
 }
 
 void BrdfBatch::sample(const float (*wo)[3], const double (*u)[2], std::size_t count,
-                           DirectionSample* out) const noexcept {
+                       DirectionSample* out) const noexcept {
 #if ACDF_BATCH_X86
     if (instructions_ == Instructions::avx512) return sample_avx512(*table_, wo, u, count, out);
     if (instructions_ == Instructions::avx2) return sample_avx2(*table_, wo, u, count, out);

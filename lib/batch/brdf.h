@@ -1,8 +1,8 @@
 // What BrdfBatch keeps beside the file, and the loops over it that are compiled for several processors.
 #pragma once
 
-#include <acdf/brdf.h>
 #include <acdf/batch/batch.h>
+#include <acdf/brdf.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -45,8 +45,7 @@ struct BatchTable {
 
 #if ACDF_BATCH_X86
 void sample_avx2(const BatchTable&, const float (*)[3], const double (*)[2], std::size_t, AcdfDirectionSample*);
-void sample_avx512(const BatchTable&, const float (*)[3], const double (*)[2], std::size_t,
-                   AcdfDirectionSample*);
+void sample_avx512(const BatchTable&, const float (*)[3], const double (*)[2], std::size_t, AcdfDirectionSample*);
 void pdf_avx2(const BatchTable&, const float (*)[3], const float (*)[3], std::size_t, float*);
 void pdf_avx512(const BatchTable&, const float (*)[3], const float (*)[3], std::size_t, float*);
 // Of one view, by tables that have a grid: of those of the file alone.
@@ -55,8 +54,8 @@ void view_pdf_avx512(const BatchTable&, const AcdfBrdfView&, const float (*)[3],
 // By tables that have guesses, too.
 void view_sample_avx2(const BatchTable&, const AcdfBrdf&, const AcdfBrdfView&, const double (*)[2], std::size_t,
                       AcdfDirectionSample*);
-void view_sample_avx512(const BatchTable&, const AcdfBrdf&, const AcdfBrdfView&, const double (*)[2],
-                        std::size_t, AcdfDirectionSample*);
+void view_sample_avx512(const BatchTable&, const AcdfBrdf&, const AcdfBrdfView&, const double (*)[2], std::size_t,
+                        AcdfDirectionSample*);
 #endif
 
 } // namespace acdf

@@ -10,8 +10,8 @@ void acdf::pdf_avx2(const BatchTable& table, const float (*wo)[3], const float (
                     float* out) {
     for_blocks<Densities>(table, wo, wi, count, out);
 }
-void acdf::view_pdf_avx2(const BatchTable& table, const AcdfBrdfView& view, const float (*wi)[3],
-                         std::size_t count, float* out) {
+void acdf::view_pdf_avx2(const BatchTable& table, const AcdfBrdfView& view, const float (*wi)[3], std::size_t count,
+                         float* out) {
     view_densities(table, view, wi, count, out);
 }
 void acdf::view_sample_avx2(const BatchTable& table, const AcdfBrdf& brdf, const AcdfBrdfView& view,

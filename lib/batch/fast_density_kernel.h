@@ -105,8 +105,8 @@ ACDF_LANE void load_ends(const FastCells& c, std::size_t at, Ints ends[2]) {
     ends[1] = two_bytes_of([&](std::size_t i) { return ends_at(c.list[at + i], (std::uint32_t)line[i]); });
 }
 
-/* acdf_local_fast_find of a vector but for what the cell has of its tile. Its lanes whose tiles are bright tiles are
- * told. */
+/* acdf_local_fast_find of a vector but for what the cell has of its tile. Its lanes whose tiles are bright tiles
+ * are told. */
 ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
     Ints ends[kRows], around[kRows]; // of groups, and of tiles in theirs
     const std::int32_t* const tiles = f->tile + at;

@@ -19,9 +19,9 @@ namespace {
 /// Draws of a block.
 struct FastDraws : FastPointLanes {
     FastCells cells;
-    std::uint64_t lit, mixed;                   // lanes that draw bright tiles, and those that draw from the mixture
-    alignas(64) double x[kRoom], before[kRoom]; // of the mixture, or of bright tiles
-    alignas(64) double step[kRoom];             // AcdfLocalPoint::step
+    std::uint64_t lit, mixed; // lanes that draw bright tiles, and those that draw from the mixture
+    alignas(64) double x[kRoom], before[kRoom];                    // of the mixture, or of bright tiles
+    alignas(64) double step[kRoom];                                // AcdfLocalPoint::step
     alignas(64) long long upper[kRows][kRoom], is_lit[kRoom];      // is_lit: all ones, or 0
     alignas(64) std::int32_t at[kRoom], below[kRoom], mass[kRoom]; // at: x or what is next; the others of tiles
     alignas(64) std::int32_t end[kRows][kRoom], ends[2][kRoom];    // of groups, of cells; as they lie
@@ -61,7 +61,8 @@ ACDF_LANE void begin_draws(const Vector u[2], std::size_t at, FastDraws* d) {
     d->lit |= (std::uint64_t)bits(is_lit) << at;
 }
 
-/* acdf_local_fast_bright_tile of the lanes that draw bright tiles. Returns those that it does not tell: next to borders. */
+/* acdf_local_fast_bright_tile of the lanes that draw bright tiles. Returns those that it does not tell: next to
+ * borders. */
 template <class At>
 ACDF_LANE std::uint64_t draw_lights(const AcdfLocal& local, const At& at, FastDraws* d) {
     std::uint64_t lost = 0;

@@ -2,8 +2,8 @@
 // tile, is asked for by several of them side by side; the operations are the same ones, on any processor.
 #include "batch/local.h"
 
-#include "batch/instructions.h"
 #include "batch/alone.h"
+#include "batch/instructions.h"
 
 #include <algorithm>
 
@@ -92,7 +92,7 @@ LocalBatch::LocalBatch(const LocalEnvironmentView& view, Instructions most) noex
 }
 
 void LocalBatch::sample(const AcdfLocalPoint& point, const double (*u)[2], std::size_t count,
-                            DirectionSample* out) const noexcept {
+                        DirectionSample* out) const noexcept {
 #if ACDF_BATCH_X86
     const LocalLoops* const loops = loops_of(local_, instructions_);
     if (loops && count >= kFewest && serves_batches(point)) return loops->sample_at(local_, point, u, count, out);
@@ -101,7 +101,7 @@ void LocalBatch::sample(const AcdfLocalPoint& point, const double (*u)[2], std::
 }
 
 void LocalBatch::sample(const float (*normals)[3], const double (*u)[2], std::size_t count,
-                            DirectionSample* out) const noexcept {
+                        DirectionSample* out) const noexcept {
 #if ACDF_BATCH_X86
     if (const LocalLoops* const loops = loops_of(local_, instructions_))
         return loops->sample(local_, normals, u, count, out);
@@ -136,7 +136,7 @@ void LocalBatch::sample(const float (*normals)[3], const double (*u)[2], std::si
 }
 
 void LocalBatch::pdf(const AcdfLocalPoint& point, const float (*directions)[3], std::size_t count,
-                         float* out) const noexcept {
+                     float* out) const noexcept {
 #if ACDF_BATCH_X86
     const LocalLoops* const loops = loops_of(local_, instructions_);
     if (loops && count >= kFewest && serves_batches(point))
@@ -146,7 +146,7 @@ void LocalBatch::pdf(const AcdfLocalPoint& point, const float (*directions)[3], 
 }
 
 void LocalBatch::pdf(const float (*normals)[3], const float (*directions)[3], std::size_t count,
-                         float* out) const noexcept {
+                     float* out) const noexcept {
 #if ACDF_BATCH_X86
     if (const LocalLoops* const loops = loops_of(local_, instructions_))
         return loops->pdf(local_, normals, directions, count, out);

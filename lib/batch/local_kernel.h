@@ -162,8 +162,8 @@ ACDF_LANE void walk(const AcdfLocalTables& tables, const Rows& rows, Walks* w) {
     }
 }
 
-/* acdf_tile_walk_end, acdf_local_sampled_tile and acdf_local_tile_probability of all lanes, into cells behind others;
- * `scaled(at, of_all)`: the probabilities of a vector of tiles that are such a part of all. */
+/* acdf_tile_walk_end, acdf_local_sampled_tile and acdf_local_tile_probability of all lanes, into cells behind
+ * others; `scaled(at, of_all)`: the probabilities of a vector of tiles that are such a part of all. */
 template <class Scaled>
 ACDF_LANE void end_walks(const AcdfLocal& local, const Walks& w, const Scaled& scaled, Cells* cells) {
     for (std::size_t i = 0; i < w.count; ++i)
@@ -255,7 +255,8 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const Rows& rows, const At& at
         const Integer lane = numbers_from(first);
         Vector v[2];
         numbers_of(u + first, more, v);
-        const unsigned served = bits(p.served) & there, light = bits((Integer)(v[0] * p.sum < p.bright_tiles)) & served;
+        const unsigned served = bits(p.served) & there,
+                       light = bits((Integer)(v[0] * p.sum < p.bright_tiles)) & served;
         lost |= (std::uint64_t)(served ^ there) << first;
         begin_walks(p, rows, v, served ^ light, lane, local.tables->tiles.root, &walks);
         if (light) draw_lights(local, p, v, light, lane, &cells);

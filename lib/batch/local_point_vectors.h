@@ -97,7 +97,8 @@ ACDF_LANE void leave_others(const AcdfLocal& local, P* out) {
     out->others = of.others;
 }
 
-/* The weight of each light, as acdf_bright_tile_weight has it. The horizon cuts few bright tiles: those are weighed again. */
+/* The weight of each light, as acdf_bright_tile_weight has it. The horizon cuts few bright tiles: those are weighed
+ * again. */
 ACDF_LANE void weigh_each(const AcdfLocal& local, Points<true>* out) {
     const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local.tables);
     const Vector* const normal = out->normal;

@@ -3,8 +3,8 @@
 // linkage: see local_kernel.h.
 #pragma once
 
-#include "batch/piece_vectors.h"
 #include "batch/batch_vectors.h"
+#include "batch/piece_vectors.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
-// The directions of acdf/pieces.h and acdf/octahedral_float.h over vectors of floats, operation by operation. Internal
-// linkage: see shared_vectors.h.
+// The directions of acdf/pieces.h and acdf/octahedral_float.h over vectors of floats, operation by operation.
+// Internal linkage: see shared_vectors.h.
 #pragma once
 
 #include "batch/shared_vectors.h"

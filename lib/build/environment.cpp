@@ -3,10 +3,10 @@
 #include "build/accuracy/partner.h"
 #include "build/errors.h"
 #include "build/local.h"
-#include "build/text/partner.h"
 #include "build/text/options.h"
-#include "compress/partner/target.h"
+#include "build/text/partner.h"
 #include "compress/halvings/fit.h"
+#include "compress/partner/target.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -97,7 +97,7 @@ compress::Halvings fit_halvings(const compress::Target& target, const Environmen
         if (fit.chunk_bytes == 0) throw std::runtime_error(out_of_budget(fit.goal.budget, description));
     }
     return options.mis ? compress::fit_halvings(fitted_target(target, options), fit)
-                           : compress::fit_halvings(target, fit);
+                       : compress::fit_halvings(target, fit);
 }
 
 FittedTree fit_tree(const compress::Target& target, const EnvironmentOptions& options, std::optional<Order> tried,

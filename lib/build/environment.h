@@ -3,9 +3,9 @@
 
 #include "build/accuracy/environment.h"
 #include "build/progress.h"
-#include "compress/partner.h"
 #include "compress/fit/fit.h"
 #include "compress/local/normals.h"
+#include "compress/partner.h"
 #include "compress/store/store.h"
 
 #include <acdf/builder.h>
@@ -26,7 +26,7 @@ struct EnvironmentOptions {
     compress::TargetOptions target;
     compress::FitOptions fit; ///< without an order, fits of two levels are made both ways, the better one kept
     AcdfCodec codec = ACDF_CODEC_NONE;
-    compress::Partner mis;                ///< of trees of the variance fit alone
+    compress::Partner mis;                    ///< of trees of the variance fit alone
     std::vector<compress::SceneNormal> scene; ///< that the partner lights; empty: all normals
     std::string scene_text;                   ///< what `scene` was read from and how, as options in one spelling
 };

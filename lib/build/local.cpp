@@ -5,8 +5,8 @@
 #include "build/lit_bins.h"
 #include "build/local_size.h"
 #include "build/local_whole.h"
-#include "build/text/partner.h"
 #include "build/text/options.h"
+#include "build/text/partner.h"
 #include "build/weight_bound.h"
 #include "compress/local/fit.h"
 
@@ -101,7 +101,8 @@ LocalDraft shared_draft(const compress::LocalFit& fit, const compress::Target& t
     LocalDraft draft{fit.tree, description_of(target, source, options, bins, {})};
     draft.description.shares = fit.shares;
     draft.description.chunks = compress::shared_chunks(fit.shared);
-    draft.description.chunks.push_back(compress::local_chunk(static_cast<float>(options.cosine_share), fit.bright_tiles));
+    draft.description.chunks.push_back(
+        compress::local_chunk(static_cast<float>(options.cosine_share), fit.bright_tiles));
     if (options.mis)
         draft.description.chunks.push_back(
             compress::partner_chunk(options.mis, mean_share(fit.records, bins), fit.records));
@@ -121,7 +122,8 @@ Budget budget_of(const LocalOptions& options, std::uint64_t all, compress::Whole
     const std::uint64_t whole = tree == compress::WholeTree::own ? std::min(whole_tree_bytes(all), all) : 0;
     const std::uint64_t others = all - whole;
     if (!options.visibility.scene) return {whole, all};
-    return {whole, whole + (options.visibility.local_bytes > 0 ? options.visibility.local_bytes : others / kLocalPart)};
+    return {whole,
+            whole + (options.visibility.local_bytes > 0 ? options.visibility.local_bytes : others / kLocalPart)};
 }
 
 std::uint64_t bytes_of(const LocalDraft& draft) { return compress::store(draft.tree, draft.description).size(); }
@@ -159,7 +161,8 @@ std::uint64_t least_bytes(const compress::Target& target, const Source& source, 
     return bytes_of(shared_draft(fitter.outlined(64), target, source, options, bins.bins())) + kSlack;
 }
 
-/// The file in which what is there without visibility cells, and without a tree of the environment alone, has `local` bytes.
+/// The file in which what is there without visibility cells, and without a tree of the environment alone, has
+/// `local` bytes.
 std::uint64_t whole_of(const LocalOptions& options, std::uint64_t local, compress::WholeTree tree) {
     const bool part = options.visibility.scene && options.visibility.local_bytes == 0;
     const std::uint64_t others = part ? local * kLocalPart : local;
@@ -168,23 +171,25 @@ std::uint64_t whole_of(const LocalOptions& options, std::uint64_t local, compres
 
 /// Adds visibility cells in what `budget` leaves.
 void add_visibility(LocalDraft& draft, const compress::Target& target, const LocalOptions& options,
-                std::uint64_t budget, const Progress& progress) {
+                    std::uint64_t budget, const Progress& progress) {
     const std::vector<std::uint8_t> bytes = compress::store(draft.tree, draft.description);
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
         throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
     compress::VisibilitySize size;
-    const std::uint64_t record = (sizeof(AcdfChunk) + ACDF_ALIGNMENT) * (options.visibility.portals.empty() ? 1 : 2);
+    const std::uint64_t record =
+        (sizeof(AcdfChunk) + ACDF_ALIGNMENT) * (options.visibility.portals.empty() ? 1 : 2);
     size.bytes = budget > bytes.size() + record ? budget - bytes.size() - record : 0;
     compress::VisibilityScene scene = options.visibility.scene;
     if (!options.visibility.portals.empty())
         scene.portals = std::make_shared<const compress::PortalSet>(
             compress::make_portals(target, options.visibility.portals, size.bytes / 8));
     for (compress::Chunk& chunk : compress::fit_visibility(file.local().data(), file.description().bin_count, scene,
-                                                       options.visibility.frame, size, [&](double share) {
-                                                           if (progress)
-                                                               progress(0.2 + 0.7 * share, "tracing visibility");
-                                                       }))
+                                                           options.visibility.frame, size, [&](double share) {
+                                                               if (progress)
+                                                                   progress(0.2 + 0.7 * share,
+                                                                            "tracing visibility");
+                                                           }))
         draft.description.chunks.push_back(std::move(chunk));
     const std::uint64_t made = bytes_of(draft);
     if (made > budget) throw OutOfReach(budget, made); // a single cell, or a map of portals, is more than is left

@@ -151,7 +151,7 @@ std::vector<BinAccuracy> measure_bins_beside(const File& file, const std::vector
 }
 
 std::vector<float> recommended_light_shares(const File& file, const std::vector<Grid>& bins,
-                                      const std::vector<Grid>& others) {
+                                            const std::vector<Grid>& others) {
     std::vector<float> out(bins.size(), 1.0f);
     compress::parallel_for(std::size_t{0}, bins.size(), [&](std::size_t k) {
         const Densities at(file, static_cast<std::uint32_t>(k), bins[k], others[k]);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "build/accuracy/table.h"
-#include "compress/partner.h"
 #include "compress/grid.h"
+#include "compress/partner.h"
 
 #include <memory>
 #include <vector>
@@ -38,6 +38,6 @@ std::vector<BinAccuracy> measure_bins_beside(const File& file, const std::vector
 /// For each bin of such a file the share of samples to take from it for the least second moment: a multiple of
 /// 1/32; 1 where there is nothing to sample.
 std::vector<float> recommended_light_shares(const File& file, const std::vector<compress::Grid>& bins,
-                                      const std::vector<compress::Grid>& others);
+                                            const std::vector<compress::Grid>& others);
 
 } // namespace acdf::build

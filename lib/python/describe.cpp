@@ -1,6 +1,6 @@
 // What is inside a file, as plain Python values; names as in `acdf info --json`.
-#include "build/text/partner.h"
 #include "build/text/format_names.h"
+#include "build/text/partner.h"
 #include "python/file.h"
 
 #include <cstring>

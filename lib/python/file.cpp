@@ -24,7 +24,7 @@ struct Conditions {
     std::size_t each = 1;
 };
 Conditions conditions(const AcdfFile* file, const py::object& condition, const std::vector<py::ssize_t>& items,
-              const char* item_name) {
+                      const char* item_name) {
     const char* name = condition_name(acdf_kind(file));
     Rows<float> of = rows<float>(condition, 3, name);
     const std::size_t each = items_each(of.leading, name, items, item_name);
@@ -117,7 +117,8 @@ py::tuple OpenFile::sample(const py::object& condition, const py::object& given,
     const Rows<double> u = rows<double>(given, 2, "u");
     py::array_t<float> directions = output<float>(out[0], u.leading, 3), pdfs = output<float>(out[1], u.leading, 0);
     float *w = directions.mutable_data(), *p = pdfs.mutable_data();
-    const Conditions at = kind == ACDF_KIND_ENVIRONMENT ? Conditions() : conditions(file(), condition, u.leading, "u");
+    const Conditions at =
+        kind == ACDF_KIND_ENVIRONMENT ? Conditions() : conditions(file(), condition, u.leading, "u");
     const double* numbers = u.data();
     const float* from = at.rows.data();
     {
@@ -164,7 +165,8 @@ py::array OpenFile::pdf(const py::object& condition, const py::object& given, co
     const Rows<float> w = rows<float>(given, 3, name);
     py::array_t<float> pdfs = output<float>(out, w.leading, 0);
     float* p = pdfs.mutable_data();
-    const Conditions at = kind == ACDF_KIND_ENVIRONMENT ? Conditions() : conditions(file(), condition, w.leading, name);
+    const Conditions at =
+        kind == ACDF_KIND_ENVIRONMENT ? Conditions() : conditions(file(), condition, w.leading, name);
     const float *directions = w.data(), *from = at.rows.data();
     {
         const py::gil_scoped_release release;
@@ -194,7 +196,8 @@ py::array OpenFile::invert(const py::object& condition, const py::object& given)
     }
     const char* name = item_name(kind);
     const Rows<float> w = rows<float>(given, 3, name);
-    const Conditions at = kind == ACDF_KIND_ENVIRONMENT ? Conditions() : conditions(file(), condition, w.leading, name);
+    const Conditions at =
+        kind == ACDF_KIND_ENVIRONMENT ? Conditions() : conditions(file(), condition, w.leading, name);
     py::array_t<double> numbers = new_array<double>(w.leading, axes);
     double* u = numbers.mutable_data();
     const float *directions = w.data(), *from = at.rows.data();

@@ -120,8 +120,8 @@ bool make_halved(const Parts& parts, bool lookup, AcdfFile& file) noexcept {
     u32 resolution[ACDF_MAX_AXES], count = 0;
     for (u32 axis = 0; axis < parts.description->axis_count; ++axis)
         if (parts.axes[axis].role == ACDF_AXIS_SAMPLED) resolution[count++] = parts.axes[axis].resolution;
-    const HalvedSource source = {parts.halvings, parts.halving_count, resolution,
-                                 count,          parts.description->parameterization, lookup};
+    const HalvedSource source = {
+        parts.halvings, parts.halving_count, resolution, count, parts.description->parameterization, lookup};
     AcdfHalvedTree* const tree = make_halved_tree(source, file.allocator, file.memory[2]);
     file.environment.halved = tree;
     if (tree) file.table_bytes = 4 * u64{tree->words};

@@ -27,13 +27,13 @@ const Tables* keep(const Tables* tables, AcdfFile& file) {
 void make_local(const Parts& parts, bool tables, AcdfFile& file) {
     const AcdfDescription& description = *parts.description;
     AcdfLocal& local = file.local;
+    // Its environment is complete, whatever the file is made for: it has no partner.
     local.blend = file.blend;
     local.environment.tree = parts.tree;
     local.environment.columns = parts.axes[ACDF_AXIS_PHI].resolution;
     local.environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
     local.environment.total = description.total;
     local.environment.parameterization = description.parameterization;
-    local.environment.partner = parts.partner;
     local.environment.tree_units = parts.tree_units;
     local.partner = parts.partner;
     local.bins = parts.bins;
@@ -50,8 +50,9 @@ void make_local(const Parts& parts, bool tables, AcdfFile& file) {
         local.columns = parts.axes[3].resolution;
     }
     if (tables && file.blend.tiles)
-        local.tables = keep(
-            make_local_tables(local, parts.tree_units, most_table_bytes(file), file.allocator, file.memory[2]), file);
+        local.tables =
+            keep(make_local_tables(local, parts.tree_units, most_table_bytes(file), file.allocator, file.memory[2]),
+                 file);
     if (local.fast.grid && local.tables) acdf_local_use_upper(&local);
 }
 
@@ -66,8 +67,8 @@ void make_brdf(const Parts& parts, bool tables, AcdfFile& file) {
                  parts.description->total,
                  nullptr};
     if (tables && can_have_tables(file.brdf))
-        file.brdf.tables = keep(
-            make_brdf_tables(file.brdf, most_table_bytes(file), true, file.allocator, file.memory[2]), file);
+        file.brdf.tables =
+            keep(make_brdf_tables(file.brdf, most_table_bytes(file), true, file.allocator, file.memory[2]), file);
 }
 
 void make_table(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) {
@@ -77,10 +78,9 @@ void make_table(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) {
     file.table = {parts.tree,    parts.bins,       parts.axes, axes, indexed, parts.description->total,
                   parts.partner, parts.tree_units, nullptr};
     if (survey)
-        file.table.entries =
-            keep(make_table_entries(file.table, parts.description->bin_count, *survey, most_table_bytes(file),
-                                    file.allocator, file.memory[2]),
-                 file);
+        file.table.entries = keep(make_table_entries(file.table, parts.description->bin_count, *survey,
+                                                     most_table_bytes(file), file.allocator, file.memory[2]),
+                                  file);
 }
 
 } // namespace

@@ -59,7 +59,7 @@ float acdf_pdf_environment(const AcdfFile* file, const float direction[3]) {
 }
 
 int acdf_sample_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
-                                float* pdfs) {
+                                  float* pdfs) {
     if (file->kind() != ACDF_KIND_ENVIRONMENT) return 0;
     for (size_t i = 0; i < count; ++i)
         put(acdf_environment_sample(&file->environment, u[2 * i], u[2 * i + 1]), i, directions, pdfs);
@@ -89,7 +89,7 @@ float acdf_pdf_local(const AcdfFile* file, const float normal[3], const float di
 }
 
 int acdf_sample_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
-                          float* directions, float* pdfs) {
+                            float* directions, float* pdfs) {
     if (!serves(file, ACDF_KIND_LOCAL, each)) return 0;
     for_each_point(file->local, normals, each, count, [&](const AcdfLocalPoint& point, size_t i) {
         put(acdf_local_sample_at(&file->local, &point, u[2 * i], u[2 * i + 1]), i, directions, pdfs);
@@ -98,7 +98,7 @@ int acdf_sample_local_array(const AcdfFile* file, const float* normals, size_t e
 }
 
 int acdf_pdf_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
-                             size_t count, float* pdfs) {
+                         size_t count, float* pdfs) {
     if (!serves(file, ACDF_KIND_LOCAL, each)) return 0;
     for_each_point(file->local, normals, each, count, [&](const AcdfLocalPoint& point, size_t i) {
         pdfs[i] = acdf_local_pdf_at(&file->local, &point, directions + 3 * i);
@@ -122,7 +122,7 @@ float acdf_pdf_brdf(const AcdfFile* file, const float wo[3], const float wi[3]) 
 }
 
 int acdf_sample_brdf_array(const AcdfFile* file, const float* wo, size_t each, const double* u, size_t count,
-                         float* wi, float* pdfs) {
+                           float* wi, float* pdfs) {
     if (!serves(file, ACDF_KIND_BRDF, each)) return 0;
     for_each_item(count, each, [&](size_t j, size_t i) {
         put(acdf_brdf_sample(&file->brdf, wo + 3 * j, u[2 * i], u[2 * i + 1]), i, wi, pdfs);
@@ -131,7 +131,7 @@ int acdf_sample_brdf_array(const AcdfFile* file, const float* wo, size_t each, c
 }
 
 int acdf_pdf_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
-                            float* pdfs) {
+                        float* pdfs) {
     if (!serves(file, ACDF_KIND_BRDF, each)) return 0;
     for_each_item(count, each,
                   [&](size_t j, size_t i) { pdfs[i] = acdf_brdf_pdf(&file->brdf, wo + 3 * j, wi + 3 * i); });
@@ -183,7 +183,7 @@ double acdf_pdf_table(const AcdfFile* file, const uint32_t* index, const double*
 }
 
 int acdf_sample_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* u, size_t count,
-                          double* x, double* pdfs) {
+                            double* x, double* pdfs) {
     if (!serves(file, ACDF_KIND_TABLE, each) || !has_index(file->table, index)) return 0;
     const AcdfTable& table = file->table;
     const uint32_t axes = acdf_table_sampled_count(&table);
@@ -194,8 +194,8 @@ int acdf_sample_table_array(const AcdfFile* file, const uint32_t* index, size_t 
     return 1;
 }
 
-int acdf_pdf_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x,
-                             size_t count, double* pdfs) {
+int acdf_pdf_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x, size_t count,
+                         double* pdfs) {
     if (!serves(file, ACDF_KIND_TABLE, each) || !has_index(file->table, index)) return 0;
     const AcdfTable& table = file->table;
     const uint32_t axes = acdf_table_sampled_count(&table);

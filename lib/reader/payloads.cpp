@@ -74,7 +74,8 @@ void read_payloads(const ChunkTable& table, const u8* bytes, const Limits& limit
         u8* const after = block + round_up(chunk.raw_length, ACDF_ALIGNMENT);
 #ifndef ACDF_ENVIRONMENT_ONLY
         if (chunk.codec == ACDF_CODEC_PLANES) {
-            if (const char* wrong = inflate_planes(bytes + chunk.offset, chunk.stored_length, out, chunk.raw_length))
+            if (const char* wrong =
+                    inflate_planes(bytes + chunk.offset, chunk.stored_length, out, chunk.raw_length))
                 report.add(wrong == no_memory_for_planes ? 1003 : 4005, chunk.offset, "planes: %s", wrong);
             else payloads.of[known] = {out, chunk.raw_length, chunk.offset, true};
             block = after;

@@ -139,8 +139,9 @@ ACDF_EXPORT void acdf_web_metadata(const Opened* opened, u32 i, u32 out[4]) {
 ACDF_EXPORT double acdf_web_share(const Opened* opened, const float* at) {
     if (opened->file.kind() == ACDF_KIND_ENVIRONMENT)
         return static_cast<double>(opened->file.environment().recommended_light_share());
-    return opened->file.kind() == ACDF_KIND_LOCAL ? static_cast<double>(opened->file.local().recommended_light_share(at))
-                                                  : 1.0;
+    return opened->file.kind() == ACDF_KIND_LOCAL
+               ? static_cast<double>(opened->file.local().recommended_light_share(at))
+               : 1.0;
 }
 
 /// Samples for `count` pairs of random numbers: x y z pdf each.

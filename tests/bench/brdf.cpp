@@ -173,11 +173,13 @@ Sampler of_batches(const std::string& name, const BrdfBatch& batch) {
     static std::vector<float> pdfs(kBatch);
     return {name,
             [&batch](std::size_t first, std::size_t count) {
-                batch.sample(QueryArrays::vectors(query_arrays().wo, first), query_arrays().numbers(first), count, samples.data());
+                batch.sample(QueryArrays::vectors(query_arrays().wo, first), query_arrays().numbers(first), count,
+                             samples.data());
                 keep(samples[0]);
             },
             [&batch](std::size_t first, std::size_t count) {
-                batch.pdf(QueryArrays::vectors(query_arrays().wo, first), QueryArrays::vectors(query_arrays().wi, first), count, pdfs.data());
+                batch.pdf(QueryArrays::vectors(query_arrays().wo, first),
+                          QueryArrays::vectors(query_arrays().wi, first), count, pdfs.data());
                 keep(pdfs[0]);
             }};
 }

@@ -2,7 +2,8 @@
 // many at once, beside the full table of an environment of as many columns, which knows nothing of normals.
 //
 //   bench_local FILE.acdf...      tables in Markdown
-//   bench_local --count point|sample|pdf FILE N [walk|batches]     N calls and nothing else, for callgrind; batches: AVX2
+//   bench_local --count point|sample|pdf FILE N [walk|batches]     N calls and nothing else, for callgrind;
+//   batches: AVX2
 #include "tests/bench/directions.h"
 #include "tests/bench/full_table.h"
 #include "tests/bench/turns.h"
@@ -28,7 +29,7 @@ using acdf_bench::uniform_directions;
 
 constexpr std::size_t kCalls = std::size_t{1} << 18; // before they repeat
 constexpr std::size_t kShared = 16;                  // calls a point, where a point has several
-constexpr std::size_t kBatch = 4096;                  // calls at once
+constexpr std::size_t kBatch = 4096;                 // calls at once
 
 /// What is asked: normals, pairs of numbers, directions anywhere and such as are sampled. Coherent ones go over a
 /// sphere, and through the strata of the numbers, in the order of a picture's pixels.
@@ -90,7 +91,7 @@ struct Compared {
     const LocalEnvironmentView &plain, &fast;
     bool evicted = false;
     LocalBatch batches[3] = {LocalBatch(fast, Instructions::none), LocalBatch(fast, Instructions::avx2),
-                               LocalBatch(fast, Instructions::avx512)};
+                             LocalBatch(fast, Instructions::avx512)};
 };
 
 /// Calls of a batch from one on, into memory of its own.
@@ -171,7 +172,7 @@ bool run(const char* path) {
     const auto samples_of = [&samples](const Questions& asked) -> Batch {
         return [&](const LocalBatch& batch, std::size_t first, std::size_t n) {
             batch.sample(reinterpret_cast<const float(*)[3]>(asked.normals.data()) + first,
-                             reinterpret_cast<const double(*)[2]>(asked.wide.data()) + first, n, samples.data());
+                         reinterpret_cast<const double(*)[2]>(asked.wide.data()) + first, n, samples.data());
         };
     };
     const Batch draws = samples_of(q);
@@ -186,7 +187,7 @@ bool run(const char* path) {
     const auto of = [&](const Directions& directions) -> Batch {
         return [&](const LocalBatch& batch, std::size_t first, std::size_t n) {
             batch.pdf(normals + first, reinterpret_cast<const float(*)[3]>(directions.data()) + first, n,
-                          densities.data());
+                      densities.data());
         };
     };
     const auto full_both = [&](std::size_t i) {
@@ -207,7 +208,8 @@ bool run(const char* path) {
     report("one of 16 samples at a point", all, at_points(kShared, draw), full_sample, shared_samples);
     report("density of a uniform direction at a normal of its own", all, once(q.anywhere), full_anywhere,
            of(q.anywhere));
-    report("density of a sampled direction at a normal of its own", all, once(q.sampled), full_sampled, of(q.sampled));
+    report("density of a sampled direction at a normal of its own", all, once(q.sampled), full_sampled,
+           of(q.sampled));
     report("one of 16 densities at a point", all, at_points(kShared, sampled), full_sampled, shared_pdfs);
     report("shading point, sample, and density of another direction (full table: both)", all, at_points(1, both),
            full_both, nullptr);

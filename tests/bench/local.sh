@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes the times of local files into docs/performance.md: tests/bench/local.sh BUILD DATA. BUILD: a release build with
+# Writes the times of local files into docs/appendix/performance-local.md: tests/bench/local.sh BUILD DATA. BUILD: a release build with
 # -DACDF_BUILD_BENCHMARKS=ON; DATA holds probes/. Needs valgrind. Best on a machine that does nothing else.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

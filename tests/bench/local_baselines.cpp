@@ -68,8 +68,9 @@ void nothing(const Point&) {}
 
 void full_cdf(benchmark::State& state) {
     const measure::LocalFullCdf baseline(sky(static_cast<std::uint32_t>(state.range(0))));
-    run(state, 64, nothing,
-        [&](const Point&, const std::array<double, 2>& u) { benchmark::DoNotOptimize(baseline.sample(u[0], u[1])); });
+    run(state, 64, nothing, [&](const Point&, const std::array<double, 2>& u) {
+        benchmark::DoNotOptimize(baseline.sample(u[0], u[1]));
+    });
 }
 
 void cosine_hemisphere(benchmark::State& state) {
@@ -82,7 +83,8 @@ void tiling(benchmark::State& state) {
     const measure::TilingOnTheFly baseline(sky(static_cast<std::uint32_t>(state.range(0))), 32, 16);
     measure::TilingOnTheFly::Point built;
     run(
-        state, static_cast<std::size_t>(state.range(1)), [&](const Point& p) { baseline.at(p.normal.data(), built); },
+        state, static_cast<std::size_t>(state.range(1)),
+        [&](const Point& p) { baseline.at(p.normal.data(), built); },
         [&](const Point&, const std::array<double, 2>& u) {
             benchmark::DoNotOptimize(baseline.sample(built, u[0], u[1]));
         });

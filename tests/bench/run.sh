@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes what docs/performance.md says of environment files, BRDFs and tables: ratios of calls to those of other samplers, and
+# Writes docs/appendix/performance-environment.md, performance-brdf.md and performance-table.md: ratios of calls to those of other samplers, and
 # instruction counts of a fixed run.
 #
 #   tests/bench/run.sh BUILD [WIDTHS...]      BUILD: a release build with -DACDF_BUILD_BENCHMARKS=ON

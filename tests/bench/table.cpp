@@ -202,7 +202,7 @@ bool run(const std::vector<std::uint32_t>& sides) {
         view.sample(nullptr, u.wide[i].data(), sampled.wide[i].data());
         for (std::size_t axis = 0; axis < sides.size(); ++axis)
             sampled.narrow[i][axis] = std::min(static_cast<float>(sampled.wide[i][axis]),
-                                             static_cast<float>(sides[axis]) * (1.0f - 0x1p-24f));
+                                               static_cast<float>(sides[axis]) * (1.0f - 0x1p-24f));
     }
     const auto ours_samples = [&u](const acdf::TableView& of) -> Candidate {
         return {"", [&](std::size_t first, std::size_t count) {

@@ -1,7 +1,8 @@
 // Files with visibility cells at the points that a camera sees, without the noise of pictures (docs/visibility.md):
 //
-//   bench_visibility make SCENE DATA local|visibility|portals BYTES OUT    a file as `acdf render` makes it for the scene
-//   bench_visibility measure SCENE DATA POINTS SAMPLER...      rows of a table, the first is what others are compared
+//   bench_visibility make SCENE DATA local|visibility|portals BYTES OUT    a file as `acdf render` makes it for the
+//   scene bench_visibility measure SCENE DATA POINTS SAMPLER...      rows of a table, the first is what others are
+//   compared
 //                                                          with; samplers as of acdf render: file:/A/FILE, portals,
 //                                                          mis(A,B)
 //   bench_visibility cost SCENE DATA POINTS FILE...            nanoseconds of a sample

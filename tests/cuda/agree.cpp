@@ -130,8 +130,9 @@ int main(int argc, char** argv) {
     }
     const std::size_t count = std::strtoul(argv[at++], nullptr, 10);
     bool same = true;
-    std::printf("| file | samples | of other directions | beyond 1e-5 | of other densities | own density is another "
-                "(processor) | by | directions of other densities | by |\n|---|---|---|---|---|---|---|---|---|\n");
+    std::printf(
+        "| file | samples | of other directions | beyond 1e-5 | of other densities | own density is another "
+        "(processor) | by | directions of other densities | by |\n|---|---|---|---|---|---|---|---|---|\n");
     if (std::strcmp(argv[at], "--product") == 0 && argc >= at + 4)
         same = of_product(std::atoi(argv[at + 1]), argv[at + 2], argv[at + 3], count);
     else

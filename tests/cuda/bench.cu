@@ -7,8 +7,8 @@
 //
 // Tables in Markdown: ns a call, several million calls a launch, the least of 20. Skips (77) where there is no
 // device.
-#include "exported.h"
 #include "baselines.h"
+#include "exported.h"
 #include "views_timed.h"
 
 #include "../bench/directions.h"
@@ -187,7 +187,8 @@ void environments(std::uint32_t columns, int count, char** paths, const Question
         }
     }
     print(("ns a call, " + std::to_string(columns) + " columns").c_str(),
-          "sample | sample, coherent numbers | density of uniform directions | density of sampled directions", rows);
+          "sample | sample, coherent numbers | density of uniform directions | density of sampled directions",
+          rows);
 }
 
 void others(int count, char** paths, const Questions& q) {
@@ -222,7 +223,8 @@ void others(int count, char** paths, const Questions& q) {
     }
     if (!local.empty())
         print("ns a call, local",
-              "point and sample | 32 threads at a normal | one of 16 samples at a point | point and density", local);
+              "point and sample | 32 threads at a normal | one of 16 samples at a point | point and density",
+              local);
     if (!brdf.empty()) print("ns a call, BRDF", "sample | 32 threads at a view | density", brdf);
 }
 

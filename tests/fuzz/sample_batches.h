@@ -6,8 +6,8 @@
 #include "tests/fuzz/require.h"
 #include "tests/lib/reader/tables/no_pieces.h"
 
-#include <acdf/product/product.h>
 #include <acdf/batch/batch.h>
+#include <acdf/product/product.h>
 
 #include <cstring>
 
@@ -47,7 +47,7 @@ inline void batch_is_the_view(const acdf::BrdfView& view, FuzzRandom& random) {
     batch.sample(asked.first, asked.u, samples_a_file, asked.samples);
     batch.pdf(asked.first, asked.second, samples_a_file, asked.pdfs);
     asked.require_single([&](int n) { return view.sample(asked.first[n], asked.u[n][0], asked.u[n][1]); },
-                        [&](int n) { return view.pdf(asked.first[n], asked.second[n]); });
+                         [&](int n) { return view.pdf(asked.first[n], asked.second[n]); });
 }
 
 /// Of a normal each, and of one shading point.
@@ -58,12 +58,12 @@ inline void local_batch_is_the_view(const acdf::LocalEnvironmentView& view, Fuzz
     batch.sample(asked.first, asked.u, samples_a_file, asked.samples);
     batch.pdf(asked.first, asked.second, samples_a_file, asked.pdfs);
     asked.require_single([&](int n) { return view.sample(asked.first[n], asked.u[n][0], asked.u[n][1]); },
-                        [&](int n) { return view.pdf(asked.first[n], asked.second[n]); });
+                         [&](int n) { return view.pdf(asked.first[n], asked.second[n]); });
     const AcdfLocalPoint point = view.at(asked.first[random.below(samples_a_file)]);
     batch.sample(point, asked.u, samples_a_file, asked.samples);
     batch.pdf(point, asked.second, samples_a_file, asked.pdfs);
     asked.require_single([&](int n) { return view.sample(point, asked.u[n][0], asked.u[n][1]); },
-                        [&](int n) { return view.pdf(point, asked.second[n]); });
+                         [&](int n) { return view.pdf(point, asked.second[n]); });
 }
 
 inline void batch_is_the_view(const acdf::LocalEnvironmentView& view, FuzzRandom& random) {
@@ -88,9 +88,9 @@ inline void product_at_once_is_the_product(const acdf::LocalEnvironmentView& vie
         return s;
     };
     const acdf::Lobe lobe([](const float*, const float*) { return 1.0; }, draw, density);
-    const acdf::ProductSampler sampler(view.data(), lobe,
-                                       {static_cast<int>(1 + random.below(random.below(4) == 0 ? 96 : 12)),
-                                        acdf_product_vectors()});
+    const acdf::ProductSampler sampler(
+        view.data(), lobe,
+        {static_cast<int>(1 + random.below(random.below(4) == 0 ? 96 : 12)), acdf_product_vectors()});
     FuzzQueries asked(random, false);
     const auto point = sampler.at(asked.first[0], asked.first[1]);
     acdf::ProductSample at_once[samples_a_file];

@@ -81,8 +81,7 @@ void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom& rando
             }
         const AcdfLocalPoint placed = view.at(position, normal);
         const acdf::DirectionSample seen = view.sample(placed, u0, u1);
-        require(is_pdf(static_cast<double>(seen.pdf)) &&
-                is_pdf(static_cast<double>(view.pdf(placed, any))));
+        require(is_pdf(static_cast<double>(seen.pdf)) && is_pdf(static_cast<double>(view.pdf(placed, any))));
         require(seen.pdf == 0.0f || (is_unit(seen.direction) && view.pdf(placed, seen.direction) > 0.0f));
         if (s.pdf == 0.0f) continue;
         require(is_unit(s.direction) && view.pdf(normal, s.direction) > 0.0f);

@@ -131,7 +131,8 @@ struct LocalMap {
             for (std::uint32_t c = 0; c < target.columns; ++c) {
                 centres.push_back(direction_at_position(target, c + 0.5, r + 0.5));
                 for (int k = 0; k < 4; ++k)
-                    quarters.push_back(direction_at_position(target, c + 0.25 + 0.5 * (k % 2), r + 0.25 + 0.5 * (k / 2)));
+                    quarters.push_back(
+                        direction_at_position(target, c + 0.25 + 0.5 * (k % 2), r + 0.25 + 0.5 * (k / 2)));
             }
     }
     LocalMap(const LocalMap&) = delete;

@@ -61,7 +61,7 @@ private:
 };
 
 void compare_sample(const Reader& reader, const std::uint32_t* words, const float* draw, double own,
-                  Differences& found) {
+                    Differences& found) {
     const acdf::DirectionSample told = reader.sample(words[0] * 0x1p-32, words[1] * 0x1p-32);
     const double pdf = draw[3];
     if (!(pdf > 0.0)) {
@@ -99,7 +99,8 @@ int check(const acdf::File& file, std::size_t count, const std::string& folder, 
     }
     const double own = found.own * 0x1p24;
     std::printf(
-        "%zu samples: %zu of another cell, the others at most %.2g off; %zu whose density the reader does not have, "
+        "%zu samples: %zu of another cell, the others at most %.2g off; %zu whose density the reader does not "
+        "have, "
         "%zu by more than is rounded; own density off by %.1f steps of 2^-24\n%zu directions: %zu of another "
         "density\n",
         found.sampled, found.other_cells, found.farthest, found.not_told, found.rounded, own, count,

@@ -69,7 +69,8 @@ std::shared_ptr<const input::MeshSurface> read_surface(const SceneOption& scene,
     return std::make_shared<const input::MeshSurface>(std::move(triangles));
 }
 
-builder::Visibility visibility_on(std::shared_ptr<const input::MeshSurface> surface, input::UpAxis up, bool volume) {
+builder::Visibility visibility_on(std::shared_ptr<const input::MeshSurface> surface, input::UpAxis up,
+                                  bool volume) {
     builder::Visibility out;
     const double lift = 1e-5 * surface->tree().size(); // floats are told: above what they were rounded to
     std::optional<AirPoints> air;

@@ -28,6 +28,7 @@ std::shared_ptr<const input::MeshSurface> read_surface(const SceneOption& scene,
 /// Points on both sides of a mesh, told by their number, and what the mesh hides from them; `volume`: half of them
 /// in the air instead, all over its box, with normals all over the sphere. `up`: how it was turned when it was
 /// read; positions are those of its file.
-builder::Visibility visibility_on(std::shared_ptr<const input::MeshSurface> surface, input::UpAxis up, bool volume = false);
+builder::Visibility visibility_on(std::shared_ptr<const input::MeshSurface> surface, input::UpAxis up,
+                                  bool volume = false);
 
 } // namespace acdf::tools

@@ -16,7 +16,7 @@ void add_partner(CLI::App& command, builder::Partner& partner, bool mean) {
             [&partner, mean](const std::string& text) {
                 if (!parse_partner(text, partner) || (!mean && partner.kind == ACDF_PARTNER_MEAN))
                     throw CLI::ValidationError("--mis", "'" + text + "' is none of none, cosine, brdf" +
-                                                             (mean ? ", mean" : ""));
+                                                            (mean ? ", mean" : ""));
             },
             mean ? "What the file is combined with, by multiple importance sampling: cosine (diffuse surfaces), "
                    "brdf "

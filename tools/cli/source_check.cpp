@@ -10,8 +10,8 @@ bool made_from_another(const File& file, const std::string& sha256, const char* 
     return hash.size > 0 && std::string(hash.data, hash.size) != sha256;
 }
 
-void note_another(const std::string& path, const File& file, const std::string& source,
-                     const std::string& sha256, const char* key) {
+void note_another(const std::string& path, const File& file, const std::string& source, const std::string& sha256,
+                  const char* key) {
     if (made_from_another(file, sha256, key))
         say(path + ": made from another file than " + source + " (its SHA-256 differs)");
 }

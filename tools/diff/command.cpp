@@ -136,8 +136,7 @@ int run(const DiffArguments& options) {
 
 void add_diff(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<DiffArguments>();
-    CLI::App& command =
-        *program.add_subcommand("diff", "Compare two files: their bytes, and what they sample");
+    CLI::App& command = *program.add_subcommand("diff", "Compare two files: their bytes, and what they sample");
     command.add_option("A", options->a, "An .acdf file (- is stdin)")->required()->type_name("")->group("Input");
     command.add_option("B", options->b, "Another one")->required()->type_name("")->group("Input");
     command

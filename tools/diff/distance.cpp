@@ -47,8 +47,8 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Samples `samples` from each of two, (p + q) / 2 in all, and compares. `sample(which, u, x)` is false where nothing
-/// is sampled, `pdf(which, x)` a density; x are `Point`s.
+/// Samples `samples` from each of two, (p + q) / 2 in all, and compares. `sample(which, u, x)` is false where
+/// nothing is sampled, `pdf(which, x)` a density; x are `Point`s.
 template <class Point, class Sample, class Pdf>
 void meet(Distance& distance, std::uint32_t samples, std::uint32_t dimensions, const Sample& sample,
           const Pdf& pdf) {

@@ -32,7 +32,7 @@ struct Baselines {
 };
 
 Baselines baselines(const compress::Reflected& reflected, const input::Brdf& brdf,
-              const std::vector<compress::View>& views) {
+                    const std::vector<compress::View>& views) {
     const measure::TabulatedBrdf mean(reflected, brdf.isotropic, measure::BrdfTableKind::mean),
         centre(reflected, brdf.isotropic, measure::BrdfTableKind::centre);
     Baselines out;

@@ -188,10 +188,11 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->option_text("N [256]")
         ->group("Input");
     command
-        .add_option("--scene", options->mesh,
-                    "Of a file that stores visibility cells: the mesh (.obj, .ply, .instances) to look from, usually "
-                    "the one it was made for; its variance there is printed beside that of its normals alone. Of "
-                    "other local files: what acdf local takes, to measure by the normals of a scene alone")
+        .add_option(
+            "--scene", options->mesh,
+            "Of a file that stores visibility cells: the mesh (.obj, .ply, .instances) to look from, usually "
+            "the one it was made for; its variance there is printed beside that of its normals alone. Of "
+            "other local files: what acdf local takes, to measure by the normals of a scene alone")
         ->type_name("FILE")
         ->group("Input");
     add_scene_up(command, options->up, "Which axis of the scene points up, as in acdf local")->group("Input");

@@ -104,7 +104,7 @@ struct VisibilityAccuracy {
 };
 
 VisibilityAccuracy measure_visibility(const File& file, const LocalMeasureOptions& options,
-                              const compress::Target& target) {
+                                      const compress::Target& target) {
     auto surface = std::make_shared<const input::MeshSurface>(input::read_triangles(options.mesh, options.up));
     const measure::MeshStage stage(std::move(surface), options.up == input::UpAxis::y, target, options.points);
     const auto with = measure::file_sampler(file), without = measure::normals_alone_sampler(file);
@@ -179,7 +179,8 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
           {"cells", whole.cells}}}};
     if (a.combined) out["combined"] = true; // of the file and its partner
     for (const Baseline& baseline : measured.baselines)
-        out["baselines"][baseline.key] = {{"relative_variance", baseline.relative_variance}, {"bytes", baseline.bytes}};
+        out["baselines"][baseline.key] = {{"relative_variance", baseline.relative_variance},
+                                          {"bytes", baseline.bytes}};
     if (measured.visibility.points > 0) out["visibility"] = visibility_json(measured.visibility);
     return out;
 }
@@ -210,8 +211,8 @@ void print_text(const File& file, const LocalMeasureOptions& options, const Loca
     std::printf("    largest weight       %.6g\n", measured.whole.max_weight);
     std::printf("  bytes                  %" PRIu64 "\n", file.size());
     for (const Baseline& baseline : measured.baselines)
-        std::printf("  %-30s relative variance %.6g, %" PRIu64 " bytes\n", baseline.text, baseline.relative_variance,
-                    baseline.bytes);
+        std::printf("  %-30s relative variance %.6g, %" PRIu64 " bytes\n", baseline.text,
+                    baseline.relative_variance, baseline.bytes);
     if (visibility.points > 0) print_visibility(visibility);
 }
 

@@ -16,7 +16,8 @@ struct LocalMeasureOptions {
     std::string file, source; ///< paths
     input::ProbeOptions input;
     std::uint32_t normals = 256;
-    std::string mesh; ///< a path: positions on it are measured, too; of files without visibility cells, only its normals
+    std::string
+        mesh; ///< a path: positions on it are measured, too; of files without visibility cells, only its normals
     input::UpAxis up = input::UpAxis::z;
     std::uint32_t points = 64; ///< on the mesh
     bool baselines = false, json = false, quiet = false;

@@ -251,10 +251,11 @@ void add_picture_options(CLI::App& command, PlotArguments& options) {
 
 void add_mesh_options(CLI::App& command, PlotArguments& options) {
     command
-        .add_option("--scene", options.mesh,
-                    "For a file that stores visibility cells, the mesh (.obj, .ply, .instances) that it was made for: "
-                    "its cells are "
-                    "shown over it, not a density")
+        .add_option(
+            "--scene", options.mesh,
+            "For a file that stores visibility cells, the mesh (.obj, .ply, .instances) that it was made for: "
+            "its cells are "
+            "shown over it, not a density")
         ->type_name("FILE")
         ->group("Cells over a mesh");
     add_scene_up(command, options.up, "Which axis of the scene points up, as in acdf local")
@@ -291,12 +292,11 @@ void add_plot(CLI::App& program, int& exit_code) {
         ->group("Input");
     add_normal(command, options->normal, "Input",
                "; the white line is its horizon. Without it the six axes are shown");
-    comma_separated(
-        command.add_option(
-            "--position", options->position,
-            "For a file that stores visibility cells (acdf local --visibility), the position in its scene; without it "
-            "what is drawn where a position is not known"),
-        3)
+    comma_separated(command.add_option("--position", options->position,
+                                       "For a file that stores visibility cells (acdf local --visibility), the "
+                                       "position in its scene; without it "
+                                       "what is drawn where a position is not known"),
+                    3)
         ->option_text("X,Y,Z")
         ->group("Input");
     add_mesh_options(command, *options);

@@ -77,7 +77,8 @@ void add_variance(const File& file, std::vector<std::string>& title) {
     }
 }
 
-std::optional<std::array<float, 3>> chosen_position(const PlotArguments& options, const LocalEnvironmentView& view) {
+std::optional<std::array<float, 3>> chosen_position(const PlotArguments& options,
+                                                    const LocalEnvironmentView& view) {
     const std::vector<float>& x = options.position;
     if (x.empty()) return std::nullopt;
     if (!view.has_visibility()) throw Failure(options.file + ": stores no visibility cells; leave out --position");
@@ -114,7 +115,8 @@ void load_local(const PlotArguments& options, Plotted& source) {
 void refuse_options_of_other_kinds(const PlotArguments& options, AcdfKind kind) {
     if (kind != ACDF_KIND_BRDF && !options.view.empty()) throw CLI::ValidationError("--view", "is for BRDF files");
     if (kind == ACDF_KIND_LOCAL) return;
-    if (!options.position.empty()) throw CLI::ValidationError("--position", "is for local environments with visibility cells");
+    if (!options.position.empty())
+        throw CLI::ValidationError("--position", "is for local environments with visibility cells");
     refuse_normal(options.file, options.normal);
 }
 

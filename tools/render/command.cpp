@@ -257,7 +257,8 @@ void add_measurement_options(CLI::App& command, RenderArguments& options) {
         .add_option_function<std::string>(
             "--sequence",
             [&options, sequences](const std::string& name) { options.sequences = sequences.at(name); },
-            "Random numbers: independent ones; sobol, a scrambled Sobol' sequence in each pixel, as renderers sample "
+            "Random numbers: independent ones; sobol, a scrambled Sobol' sequence in each pixel, as renderers "
+            "sample "
             "them; or both, one table each")
         ->check(CLI::IsMember({"independent", "sobol", "both"}))
         ->type_name("")
@@ -293,14 +294,15 @@ void add_scene_options(CLI::App& command, RenderArguments& options) {
         ->option_text("DIR [.]")
         ->group("Input");
     command
-        .add_option("--sampler", options.samplers,
-                    "Instead of the scene's; repeat for several, the first is the baseline: full-cdf, cosine, "
-                    "tiles:32x16, visibility-cache:32x16, portals, portals:uniform, env:64KiB, local:1MB, visibility:4MB, "
-                    "visibility-portals:4MB, "
-                    "brdf:64KiB, brdf-table, brdf-table:centre, ggx:0.1, alias, "
-                    "hierarchical, downsampled:64x32, mis-compensated, strata, ris:32, file:my.acdf, "
-                    "mis(local:1MB,cosine), mis(4*local,cosine), mis-power(...), product(local:1MB,brdf:64KiB) and "
-                    "others of docs/render.md")
+        .add_option(
+            "--sampler", options.samplers,
+            "Instead of the scene's; repeat for several, the first is the baseline: full-cdf, cosine, "
+            "tiles:32x16, visibility-cache:32x16, portals, portals:uniform, env:64KiB, local:1MB, visibility:4MB, "
+            "visibility-portals:4MB, "
+            "brdf:64KiB, brdf-table, brdf-table:centre, ggx:0.1, alias, "
+            "hierarchical, downsampled:64x32, mis-compensated, strata, ris:32, file:my.acdf, "
+            "mis(local:1MB,cosine), mis(4*local,cosine), mis-power(...), product(local:1MB,brdf:64KiB) and "
+            "others of docs/render.md")
         ->option_text("TEXT ...")
         ->expected(1)
         ->take_all()

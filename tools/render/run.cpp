@@ -129,8 +129,8 @@ std::string judge(const Comparison& comparison, Gain gain, const char* where, co
     const measure::Interval factor = gain(first, second);
     std::string text = std::string("At equal ") + where + (wins ? " ours, '" : " a baseline wins: '") +
                        first.spec.text + "'" + (wins ? ", wins: " : ", ") + range_text(factor) + " times less " +
-                       what + " than " + (wins ? "the best baseline, '" : "the best of ours, '") + second.spec.text +
-                       "'";
+                       what + " than " + (wins ? "the best baseline, '" : "the best of ours, '") +
+                       second.spec.text + "'";
     if (factor.low <= 1.0) text += "; within the noise of this run";
     return text + ".";
 }

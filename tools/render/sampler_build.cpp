@@ -74,7 +74,7 @@ Table local_table(const builder::Target& target, const SamplerSpec& spec,
 
 /// `portals`: those of the scene, too.
 Table visibility_table(const builder::Target& target, const measure::Geometry& geometry, std::uint64_t bytes,
-                   bool portals) {
+                       bool portals) {
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(bytes);
     const compress::VisibilityScene scene = measure::visibility_scene(geometry);
@@ -181,8 +181,7 @@ struct SamplerBuilder::Store {
             return visibility_table(fitted, *geometry, spec.bytes, false);
         case SamplerKind::visibility_portals:
             if (!geometry) fail_without_scene(spec);
-            if (geometry->portals.empty())
-                throw SpecError("sampler '" + spec.text + "': the scene has no portals");
+            if (geometry->portals.empty()) throw SpecError("sampler '" + spec.text + "': the scene has no portals");
             return visibility_table(fitted, *geometry, spec.bytes, true);
         case SamplerKind::brdf:
             return brdf_table(*brdfs[material], spec.bytes);

@@ -146,7 +146,7 @@ void read_partner(const std::string& options, SamplerSpec& spec) {
             ++i;
             continue;
         }
-        const bool known = words[i] == "--mis"        ? parse_partner(value, spec.mis)
+        const bool known = words[i] == "--mis"         ? parse_partner(value, spec.mis)
                            : words[i] == "--shares"    ? parse_shares(value, spec.mis)
                            : words[i] == "--heuristic" ? parse_heuristic(value, spec.mis)
                                                        : false;

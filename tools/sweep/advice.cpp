@@ -124,11 +124,11 @@ std::string named(const Sweep& sweep, const Advice& advice, Verdict verdict) {
 
 /// Who wins at equal time; a sentence for each way it can end.
 void add_time_findings(const Sweep& sweep, Advice& advice, const SweepRow& best) {
-    const std::string than = " Figures are the baseline's variance over that of the " + to_readable_size(best.bytes) +
-                             " file after the same time, of which a sample takes " +
+    const std::string than = " Figures are the baseline's variance over that of the " +
+                             to_readable_size(best.bytes) + " file after the same time, of which a sample takes " +
                              short_number(sweep.costs.shadow_ray_ns) + " ns beside its sampling.";
-    const std::string baselines = named(sweep, advice, Verdict::baseline), even = named(sweep, advice, Verdict::even),
-                      ours = named(sweep, advice, Verdict::ours);
+    const std::string baselines = named(sweep, advice, Verdict::baseline),
+                      even = named(sweep, advice, Verdict::even), ours = named(sweep, advice, Verdict::ours);
     if (!baselines.empty()) advice.findings.push_back("At equal time a baseline wins: " + baselines + "." + than);
     else if (!even.empty() || !ours.empty()) advice.findings.push_back("At equal time no baseline wins." + than);
     if (!even.empty()) advice.findings.push_back("Too close to call at equal time: " + even + ".");
@@ -147,8 +147,8 @@ std::string sample_finding(const Sweep& sweep, const SweepRow& best) {
     std::string names;
     for (const SweepRow& baseline : sweep.rows)
         if (!baseline.ours() && baseline.relative_variance < best.relative_variance)
-            names += (names.empty() ? "" : "; ") + baseline.label + " (" + short_number(baseline.relative_variance) +
-                     ", " + to_readable_size(baseline.bytes) + ")";
+            names += (names.empty() ? "" : "; ") + baseline.label + " (" +
+                     short_number(baseline.relative_variance) + ", " + to_readable_size(baseline.bytes) + ")";
     if (names.empty())
         return "Sample for sample no baseline is less noisy " + of + " (relative variance " +
                short_number(best.relative_variance) + ").";

@@ -110,9 +110,10 @@ std::vector<Candidate> environment_baselines(const Target& target, const SweepOp
     std::vector<Candidate> out;
     out.push_back(baseline_candidate("full_cdf", "full-resolution CDF", measure::full_cdf_sampler(target)));
     out.push_back(baseline_candidate("alias_table", "alias table", measure::alias_sampler(target)));
-    out.push_back(baseline_candidate("hierarchical_warp", "hierarchical warp", measure::hierarchical_sampler(target)));
+    out.push_back(
+        baseline_candidate("hierarchical_warp", "hierarchical warp", measure::hierarchical_sampler(target)));
     out.push_back(baseline_candidate("mis_compensation", "compensated CDF, for MIS only",
-                                  measure::compensated_sampler(target)));
+                                     measure::compensated_sampler(target)));
     for (std::uint64_t budget : budgets_of(SweepKind::environment, options)) {
         const double side = std::sqrt(static_cast<double>(budget) / 8.0 / 2.0); // eight bytes a cell, 2:1
         const auto rows = static_cast<std::uint32_t>(std::lround(side));

@@ -104,7 +104,7 @@ measure::ShadingPoint point_of(const compress::View& view) {
 
 /// `points`: the views over which baselines are measured.
 std::vector<Candidate> baselines(const input::Brdf& brdf, const compress::Reflected& reflected, std::uint32_t count,
-                              std::vector<SampledPoint>& points) {
+                                 std::vector<SampledPoint>& points) {
     const std::vector<compress::View> views = build::random_views(count, brdf.isotropic);
     std::vector<Candidate> out;
     const auto add = [&](const char* system, const std::string& label,
@@ -180,8 +180,7 @@ void add_sobol(const compress::Reflected& reflected, const std::vector<SampledPo
     };
     for (Candidate& each : candidates)
         if (std::isfinite(each.row.relative_variance))
-            each.row.sobol =
-                sobol_variance(*each.sampler, points, integrand, options.visible.spp, options.seeds);
+            each.row.sobol = sobol_variance(*each.sampler, points, integrand, options.visible.spp, options.seeds);
 }
 
 } // namespace
@@ -202,7 +201,8 @@ Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const bui
     part(0.7, 0.0)(0.0, "measuring baselines");
     sweep.reference = candidates.size();
     std::vector<SampledPoint> sampled;
-    for (Candidate& baseline : baselines(brdf, reflected, options.views, sampled)) candidates.push_back(std::move(baseline));
+    for (Candidate& baseline : baselines(brdf, reflected, options.views, sampled))
+        candidates.push_back(std::move(baseline));
     part(0.8, 0.0)(0.0, "drawing");
     add_sobol(reflected, sampled, options, candidates);
     if (options.pictures) add_pictures(sweep, reflected, candidates);

@@ -59,7 +59,7 @@ Candidate file_candidate(std::vector<std::uint8_t> bytes) {
 }
 
 Candidate baseline_candidate(std::string system, std::string label,
-                          std::shared_ptr<const measure::LightSampler> sampler) {
+                             std::shared_ptr<const measure::LightSampler> sampler) {
     Candidate out;
     out.row.system = std::move(system);
     out.row.label = std::move(label);

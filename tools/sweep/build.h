@@ -38,7 +38,7 @@ struct Candidate {
 Candidate file_candidate(std::vector<std::uint8_t> bytes);
 /// With the sampler's size.
 Candidate baseline_candidate(std::string system, std::string label,
-                          std::shared_ptr<const measure::LightSampler> sampler);
+                             std::shared_ptr<const measure::LightSampler> sampler);
 
 /// One file to be made: a fit at a size.
 struct Step {

@@ -124,7 +124,9 @@ std::string output_of(const std::string& source, SweepKind kind) {
     std::error_code ignored;
     const std::string stem =
         fs::exists(source, ignored) ? fs::path(source).stem().string() : source.substr(0, source.find(':'));
-    return stem + (kind == SweepKind::local ? ".local.acdf" : kind == SweepKind::visibility ? ".visibility.acdf" : ".acdf");
+    return stem + (kind == SweepKind::local        ? ".local.acdf"
+                   : kind == SweepKind::visibility ? ".visibility.acdf"
+                                                   : ".acdf");
 }
 
 /// What files are made of, as the subcommand does that makes one; points of meshes see lat-long texels.
@@ -235,22 +237,24 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
                                           {"brdf", SweepKind::brdf}};
     add_choice(
         command, "--kind", [&options](SweepKind kind) { options.kind = kind; }, kinds,
-        "Which files are compared: env, local (for every normal), visibility (of a scene: acdf local --visibility) or "
+        "Which files are compared: env, local (for every normal), visibility (of a scene: acdf local --visibility) "
+        "or "
         "brdf")
         ->option_text("NAME [by the source: env or brdf]")
         ->group("Sweep");
-    options.scene.add(command, "For --kind visibility: the mesh (.obj, .ply, .instances) whose there are visibility cells",
+    options.scene.add(command,
+                      "For --kind visibility: the mesh (.obj, .ply, .instances) whose there are visibility cells",
                       "Sweep");
     comma_separated(command.add_option("--budgets", options.budgets, "Sizes to try, separated by commas"))
         ->option_text("SIZES [4KiB,16KiB,64KiB,256KiB,1MB for env]")
         ->group("Sweep");
-    comma_separated(
-        command.add_option(
-            "--fits", options.sweep.fits,
-            "Fits to try, separated by commas. env: variance, cdf, pdf, uniform; local: variance, fast "
-            "(--shape fast), separate (a tree for each normal), cdf (the paper's); visibility: visibility, variance (by "
-            "normals "
-            "alone); brdf: variance, separate, cdf, uniform"))
+    comma_separated(command.add_option(
+                        "--fits", options.sweep.fits,
+                        "Fits to try, separated by commas. env: variance, cdf, pdf, uniform; local: variance, fast "
+                        "(--shape fast), separate (a tree for each normal), cdf (the paper's); visibility: "
+                        "visibility, variance (by "
+                        "normals "
+                        "alone); brdf: variance, separate, cdf, uniform"))
         ->option_text("NAMES [all of the kind; local: variance,fast,cdf]")
         ->group("Sweep");
     command

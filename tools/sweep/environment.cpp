@@ -5,9 +5,9 @@
 #include "tools/cli/built.h"
 #include "tools/plot/density.h"
 #include "tools/plot/knots.h"
+#include "tools/sweep/baselines.h"
 #include "tools/sweep/build.h"
 #include "tools/sweep/occluders.h"
-#include "tools/sweep/baselines.h"
 #include "tools/sweep/surface.h"
 #include "tools/sweep/surface_samples.h"
 

@@ -5,8 +5,8 @@
 #include "compress/sum.h"
 #include "tools/cli/built.h"
 #include "tools/plot/density.h"
-#include "tools/sweep/build.h"
 #include "tools/sweep/baselines.h"
+#include "tools/sweep/build.h"
 #include "tools/sweep/surface.h"
 #include "tools/sweep/surface_samples.h"
 

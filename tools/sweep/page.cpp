@@ -35,10 +35,10 @@ std::string prose(const std::string& text) {
 }
 
 const char* kind_text(SweepKind kind) {
-    return kind == SweepKind::environment ? "environment map"
-           : kind == SweepKind::local     ? "environment map for every normal"
-           : kind == SweepKind::visibility    ? "environment map for the positions of a scene"
-                                          : "BRDF";
+    return kind == SweepKind::environment  ? "environment map"
+           : kind == SweepKind::local      ? "environment map for every normal"
+           : kind == SweepKind::visibility ? "environment map for the positions of a scene"
+                                           : "BRDF";
 }
 
 const char* conditions_text(SweepKind kind) {
@@ -188,7 +188,8 @@ std::string comparisons_html(const Sweep& sweep, const Advice& advice) {
     std::string out = "<section>\n<h2>Beside what renderers use today</h2>\n<ul class=\"say\">\n";
     for (const std::string& finding : advice.findings) out += "<li>" + prose(finding) + "</li>\n";
     out +=
-        "</ul>\n<p class=\"soft\">Each baseline over the recommended file: more than 1 speaks for the file. Ratios of "
+        "</ul>\n<p class=\"soft\">Each baseline over the recommended file: more than 1 speaks for the file. Ratios "
+        "of "
         "times have the interval that holds the median with 95 % confidence; variances are exact.</p>\n"
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Baselines\"><table id=\"baselines\">\n"
         "<thead><tr><th>baseline</th><th>memory</th><th>variance</th>";
@@ -264,7 +265,8 @@ std::string method_html(const Sweep& sweep) {
         lines.push_back(
             "On a diffuse surface: the same of the irradiance, light times cosine above the horizon, mean over " +
             conditions +
-            " random normals. With an MIS partner: half of the samples are cosine distributed, all weighed by the balance "
+            " random normals. With an MIS partner: half of the samples are cosine distributed, all weighed by the "
+            "balance "
             "heuristic. Behind occluders: points of the demo scene, a sphere on a plane beside a wall; there "
             "variances "
             "are divided by E^2 + (0.1 mean E)^2, E of the point, so that a few nearly black ones do not decide. "

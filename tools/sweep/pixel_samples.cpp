@@ -6,7 +6,7 @@
 namespace acdf::tools {
 
 double sampled_mean(const measure::PointSampler& sampler, measure::Random& random, std::uint32_t samples,
-                  const std::function<double(const float wi[3])>& integrand) {
+                    const std::function<double(const float wi[3])>& integrand) {
     random.begin_set();
     double sum = 0.0;
     for (std::uint32_t i = 0; i < samples; ++i) {

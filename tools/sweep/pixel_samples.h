@@ -22,7 +22,7 @@ using SampledIntegrand = std::function<double(std::size_t point, const float wi[
 
 /// The mean of f/p over a new set of `samples`.
 double sampled_mean(const measure::PointSampler& sampler, measure::Random& random, std::uint32_t samples,
-                  const std::function<double(const float wi[3])>& integrand);
+                    const std::function<double(const float wi[3])>& integrand);
 
 /// Without bias, of at least two numbers.
 double unbiased_variance(const std::vector<double>& values);

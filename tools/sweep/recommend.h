@@ -13,8 +13,8 @@ namespace acdf::tools {
 /// (local, BRDF) what a surface reflects anyway.
 double variance_in(const SweepRow& row, Situation situation, measure::Numbers numbers);
 
-/// How many times as long as one of `b` a sample of `a` takes, all that it costs included; with an MIS partner half of the
-/// samples are the surface's, and all need the density of both. Unknown where it was not timed.
+/// How many times as long as one of `b` a sample of `a` takes, all that it costs included; with an MIS partner half
+/// of the samples are the surface's, and all need the density of both. Unknown where it was not timed.
 Interval cost_ratio(const SweepRow& a, const SweepRow& b, Situation situation, const SampleCosts& costs);
 
 struct Recommended {

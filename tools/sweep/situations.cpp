@@ -39,14 +39,14 @@ std::string sentence_of(const Sweep& sweep, const SituationAdvice& s) {
                        "independent samples (median point: " +
                        noise_texts(s.lit.median) + ")";
     if (s.lit.sobol == s.lit.sobol)
-        text += ", " + noise_text(s.lit.sobol, sweep.visible.spp) + " at " +
-                std::to_string(sweep.visible.spp) + " of a scrambled Sobol' sequence";
+        text += ", " + noise_text(s.lit.sobol, sweep.visible.spp) + " at " + std::to_string(sweep.visible.spp) +
+                " of a scrambled Sobol' sequence";
     const char* after = sweep.timed ? "After the same time: " : "After the same samples: ";
     text += std::string(". ") + after + noise_ratio_text(s.over_reference.value) + " the " + base.label;
     if (!s.has_baseline) return text + ".";
     const bool even = s.over_best_baseline.low < 1.0 && s.over_best_baseline.high > 1.0;
     return text + ", " + noise_ratio_text(s.over_best_baseline.value) + " the best baseline, the " +
-           sweep.rows[s.baseline].label + (even ? " (too close to call)." : ".");
+           sweep.rows[s.reference].label + (even ? " (too close to call)." : ".");
 }
 
 } // namespace

@@ -76,8 +76,8 @@ private:
 } // namespace
 
 SampledVariances sobol_variances(const compress::Target& target, const measure::LightSampler& sampler,
-                               const std::vector<SurfacePoint>& points, const std::vector<PointVariance>& exact,
-                               Scale scale, std::uint32_t samples, std::uint32_t seeds) {
+                                 const std::vector<SurfacePoint>& points, const std::vector<PointVariance>& exact,
+                                 Scale scale, std::uint32_t samples, std::uint32_t seeds) {
     samples += samples % 2;
     const measure::ProbeGrid grid(target);
     std::vector<PointVariance> sampled(points.size());
@@ -90,7 +90,8 @@ SampledVariances sobol_variances(const compress::Target& target, const measure::
             alone.push_back(draws.alone(random, samples));
             partner.push_back(draws.partner(random, samples));
         }
-        sampled[i] = {exact[i].irradiance, unbiased_variance(alone) * samples, unbiased_variance(partner) * samples};
+        sampled[i] = {exact[i].irradiance, unbiased_variance(alone) * samples,
+                      unbiased_variance(partner) * samples};
     });
     const SurfaceVariances out = summary(sampled, scale);
     return {out.alone.mean, out.partner.mean};

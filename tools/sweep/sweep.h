@@ -107,7 +107,7 @@ struct Sweep {
     std::string output;      ///< a name for the recommended file
     VisibleNoise visible;
     std::vector<SweepRow> rows;
-    std::size_t reference = 0;       ///< row with which times are compared
+    std::size_t reference = 0;      ///< row with which times are compared
     std::uint32_t conditions = 0;   ///< normals or views that means are over
     std::vector<std::string> notes; ///< what a reader of the figures should know
     std::vector<SweepPicture> pictures;
@@ -150,10 +150,10 @@ struct SweptMesh {
     std::string text;                          ///< that files tell
     std::string options;                       ///< in the words of the command line
 };
-/// Files with visibility cells beside those of normals alone, on a mesh with what it hides: at options.normals points all over
-/// it. There are no pictures.
+/// Files with visibility cells beside those of normals alone, on a mesh with what it hides: at options.normals
+/// points all over it. There are no pictures.
 Sweep sweep_visibility(const builder::Target& target, const builder::Source& source, const SweptMesh& mesh,
-                   const SweepOptions& options, const build::Progress& progress = {});
+                       const SweepOptions& options, const build::Progress& progress = {});
 /// The same of a BRDF.
 Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const build::Progress& progress = {});
 

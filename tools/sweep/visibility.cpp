@@ -3,8 +3,8 @@
 #include "measure/scenes/mesh_stage.h"
 #include "tools/cli/built.h"
 #include "tools/commands.h"
-#include "tools/sweep/build.h"
 #include "tools/sweep/baselines.h"
+#include "tools/sweep/build.h"
 #include "tools/sweep/surface.h"
 
 #include <algorithm>
@@ -52,7 +52,7 @@ void measure_on(const measure::MeshStage& stage, std::vector<Candidate>& candida
 } // namespace
 
 Sweep sweep_visibility(const builder::Target& fitted, const builder::Source& source, const SweptMesh& mesh,
-                   const SweepOptions& options, const build::Progress& progress) {
+                       const SweepOptions& options, const build::Progress& progress) {
     compress::Target map;
     const compress::Target& target = compress::looked_up(builder::grid_of(fitted), map);
     Sweep sweep;

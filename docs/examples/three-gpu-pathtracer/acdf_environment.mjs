@@ -1,5 +1,5 @@
-// three-gpu-pathtracer with an .acdf file in place of the tables that it makes of the environment: the same picture from
-// fewer samples. Written for three-gpu-pathtracer 0.0.26, whose shader it extends by two functions.
+// three-gpu-pathtracer with an .acdf file in place of the tables that it makes of the environment: the same picture, with
+// as many samples. Written for three-gpu-pathtracer 0.0.26, whose shader it extends by two functions.
 //
 //   const file = reader.open(bytes);                       // of the same map: acdf env sky.hdr --filter bilinear
 //   const pathTracer = new WebGLPathTracer(renderer);

@@ -5,8 +5,8 @@
 #include "compress/parallel.h"
 #include "compress/sum.h"
 
-#include <acdf/sample.h>
 #include <acdf/batch/batch.h>
+#include <acdf/sample.h>
 
 #include <algorithm>
 #include <array>
@@ -187,8 +187,7 @@ std::vector<ViewAccuracy> measure_views(const ViewPdf& density, const compress::
     return out;
 }
 
-std::vector<double> relative_variances(const std::vector<ViewPdf>& densities,
-                                       const compress::Reflected& reflected,
+std::vector<double> relative_variances(const std::vector<ViewPdf>& densities, const compress::Reflected& reflected,
                                        const std::vector<compress::View>& views, std::uint32_t columns,
                                        std::uint32_t rows) {
     std::vector<std::vector<ViewAccuracy>> measured(densities.size(), std::vector<ViewAccuracy>(views.size()));
@@ -203,8 +202,7 @@ std::vector<double> relative_variances(const std::vector<ViewPdf>& densities,
         for (std::size_t d = 0; d < densities.size(); ++d) measured[d][v] = sums[d].result();
     });
     std::vector<double> out;
-    for (const std::vector<ViewAccuracy>& of_pdf : measured)
-        out.push_back(summary(of_pdf).relative_variance);
+    for (const std::vector<ViewAccuracy>& of_pdf : measured) out.push_back(summary(of_pdf).relative_variance);
     return out;
 }
 

@@ -60,8 +60,7 @@ std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflec
 
 /// summary(measure_views(density, ...)).relative_variance of several densities, which throws alike: what is
 /// reflected is looked up once for all of them.
-std::vector<double> relative_variances(const std::vector<ViewPdf>& densities,
-                                       const compress::Reflected& reflected,
+std::vector<double> relative_variances(const std::vector<ViewPdf>& densities, const compress::Reflected& reflected,
                                        const std::vector<compress::View>& views, std::uint32_t columns = 251,
                                        std::uint32_t rows = 601);
 

@@ -132,7 +132,8 @@ private:
         if (source.what == ACDF_LOCAL_FAST) spread_sums(source, out);
         else spread(boxes_.size() > 1 ? 0 : ACDF_TILE_FLAG, source.mix, source.sum, out);
         for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
-            out[local_.bright_tiles[k].tile] = acdf_bright_tile_weight(&local_.bright_tiles[k], &source) / source.sum;
+            out[local_.bright_tiles[k].tile] =
+                acdf_bright_tile_weight(&local_.bright_tiles[k], &source) / source.sum;
         return out;
     }
 
@@ -147,7 +148,7 @@ private:
         const TilePicture& picture;
         /// Probabilities without the share around the normal; empty: nothing is sampled.
         const std::vector<double>& tile;
-        double share;            ///< that is sampled around the normal
+        double share;               ///< that is sampled around the normal
         Combination both, baseline; ///< with the partner
         double largest = 0.0;
         std::uint64_t violations = 0;

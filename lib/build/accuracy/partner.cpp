@@ -142,7 +142,8 @@ PartnerAccuracy measure_beside_partner(const File& file, const compress::Target&
     return out;
 }
 
-double recommended_light_share(const File& file, const compress::Target& target, const std::vector<Normal>& normals) {
+double recommended_light_share(const File& file, const compress::Target& target,
+                               const std::vector<Normal>& normals) {
     const Measure measure(file, target, Texels::own);
     std::vector<double> irradiance(normals.size());
     compress::parallel_for(std::size_t{0}, normals.size(),

@@ -19,6 +19,7 @@ PartnerAccuracy measure_beside_partner(const File& file, const compress::Target&
 
 /// Of all samples, how many to sample from that file for the least second moment of estimates, summed over normals
 /// relative to their irradiance: a multiple of 1/32. 1 where no normal sees any light.
-double recommended_light_share(const File& file, const compress::Target& target, const std::vector<Normal>& normals);
+double recommended_light_share(const File& file, const compress::Target& target,
+                               const std::vector<Normal>& normals);
 
 } // namespace acdf::build

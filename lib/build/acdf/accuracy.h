@@ -36,8 +36,8 @@ struct LocalAccuracy {
     double max_weight = 0.0;              ///< largest f/p over its mean
     std::uint64_t support_violations = 0; ///< texels with f > 0 and p = 0
     std::uint32_t lit_normals = 0;
-    /// The file has an MIS partner: variances, weights and violations are those of both together, the variance that of N
-    /// samples in the fit's shares, times N; that of the full CDF the same, in the place of the file.
+    /// The file has an MIS partner: variances, weights and violations are those of both together, the variance that
+    /// of N samples in the fit's shares, times N; that of the full CDF the same, in the place of the file.
     bool combined = false;
 };
 

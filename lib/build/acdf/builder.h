@@ -183,7 +183,7 @@ struct EnvironmentOptions {
     TargetOptions target; ///< of pixels and rows; a Target has its own
     Goal goal;            ///< cells: in all, about 4.2 bytes each; variance: up to 16 MiB. Of the variance fit only
     FitOptions fit;
-    Partner mis;                  ///< of the variance fit as a tree, without max_weight or a goal of variance
+    Partner mis;                      ///< of the variance fit as a tree, without max_weight or a goal of variance
     std::vector<SceneNormal> normals; ///< that the partner lights; empty: all normals
     std::string normals_text;         ///< as in LocalOptions
     AcdfCodec codec = ACDF_CODEC_NONE;
@@ -215,8 +215,8 @@ enum class BinTarget {
 /// How bins that share tiles are stored.
 enum class LocalShape {
     small, ///< least noise for its bytes
-    fast,  ///< grids in tiles and sums in rows, which are searched by vectors: samples and densities take 0.6 of the
-           ///< time
+    fast, ///< grids in tiles and sums in rows, which are searched by vectors: samples and densities take 0.6 of the
+          ///< time
     automatic ///< both are made: fast where its variance and its size are at most 1.15 times those of small, for
               ///< then it has no more noise after the same time (of those that reach a variance: where it is no
               ///< larger); small where that fails, or options ask for what fast has not
@@ -246,8 +246,8 @@ struct Visibility {
     /// coordinate: x' = t[0] x + t[1] y + t[2] z + t[3].
     float transform[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
     /// Windows and doors that light comes through, at most 8: samples are taken through them, exactly, and by the
-    /// rows of visibility cells for all that comes in another way. With them `transform` turns, mirrors, moves and scales as
-    /// a whole, to the frame of directions.
+    /// rows of visibility cells for all that comes in another way. With them `transform` turns, mirrors, moves and
+    /// scales as a whole, to the frame of directions.
     std::vector<Portal> portals;
 };
 
@@ -262,14 +262,16 @@ struct LocalOptions {
     std::vector<SceneNormal> normals;     ///< only what a scene has; empty: all normals
     double cosine_share = 0.0;            ///< of samples that are taken around the normal instead, in [0, 0.99]
     bool sharing = true;                  ///< bins share tiles; else each has a tree of its own, larger and noisier
-    LocalShape shape = LocalShape::automatic; ///< fast: with sharing, without max_weight, an MIS partner and visibility
-    BinTarget bin_target = BinTarget::mean;   ///< without sharing
-    FitOptions fit;                           ///< of a bin's tree, without sharing
-    Partner mis;                          ///< of bins that share tiles, without a cosine_share
+    LocalShape shape =
+        LocalShape::automatic; ///< fast: with sharing, without max_weight, an MIS partner and visibility
+    BinTarget bin_target = BinTarget::mean; ///< without sharing
+    FitOptions fit;                         ///< of a bin's tree, without sharing
+    Partner mis;                            ///< of bins that share tiles, without a cosine_share
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;
     std::string normals_text; ///< what fit.options tells of `normals`; empty: that there are some
-    Visibility visibility; ///< both callbacks: bins share tiles, the goal is a budget, and visibility cells take more than half of it
+    Visibility visibility;    ///< both callbacks: bins share tiles, the goal is a budget, and visibility cells take
+                              ///< more than half of it
 };
 
 /// The file of a local environment, and what is known of it.
@@ -365,7 +367,7 @@ struct TableOptions {
     Goal goal = Goal::of_cells(0);                 ///< cells: a bin, on average; 0: 4096 in all, at least 64 a bin
     double max_weight = 0.0;                       ///< the largest f/p over its mean, at least 1; 0: no bound
     bool bad_as_zero = false;                      ///< bad numbers count as 0, else ErrorCode::bad_source
-    Partner mis;                               ///< ACDF_PARTNER_TABLE, without max_weight or a goal of variance
+    Partner mis;                                   ///< ACDF_PARTNER_TABLE, without max_weight or a goal of variance
     Array other;                                   ///< that table, of the same shape; each bin has its own density
     Source other_source;                           ///< name and sha256
     AcdfCodec codec = ACDF_CODEC_NONE;

@@ -1,5 +1,5 @@
 // Renderers of which it is known how they look an environment map up: the options that suit each, and the axes of
-// its light. `acdf env --for NAME` uses the same table; docs/conventions.md says where each line is read off.
+// its light. `acdf env --for NAME` uses the same table; docs/notes/conventions.md says where each line is read off.
 //
 //     if (const acdf::builder::Renderer* cycles = acdf::builder::find_renderer("cycles")) {
 //         options.target = cycles->target;

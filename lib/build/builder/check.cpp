@@ -161,8 +161,10 @@ static bool keeps_angles(const float t[3][4]) {
 }
 
 static void check_visibility(const LocalOptions& options) {
-    require(!options.visibility.point == !options.visibility.occluded, "visibility cells need both callbacks, or none");
-    require(options.visibility.point || options.visibility.portals.empty(), "portals are for files with visibility cells");
+    require(!options.visibility.point == !options.visibility.occluded,
+            "visibility cells need both callbacks, or none");
+    require(options.visibility.point || options.visibility.portals.empty(),
+            "portals are for files with visibility cells");
     if (!options.visibility.point) return;
     require(options.sharing, "visibility cells are for bins that share tiles");
     require(options.goal.kind == Goal::Kind::budget, "the goal of visibility cells is a budget");

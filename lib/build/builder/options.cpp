@@ -110,7 +110,8 @@ VisibilityPoint external(const compress::VisibilityPoint& point) {
     return out;
 }
 
-/// Among the cells. Where the transform mirrors, the sides change visibility, so that light comes from where it did.
+/// Among the cells. Where the transform mirrors, the sides change visibility, so that light comes from where it
+/// did.
 compress::PortalRectangle internal(const Portal& portal, const float transform[3][4]) {
     compress::PortalRectangle out;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -137,7 +138,7 @@ build::SceneVisibility internal(const Visibility& visibility) {
         return true;
     };
     out.scene.occluded = [occluded = visibility.occluded](const compress::VisibilityPoint& point,
-                                                      const std::array<float, 3>& direction) {
+                                                          const std::array<float, 3>& direction) {
         const VisibilityPoint told = external(point);
         return called([&] { return occluded(told, direction.data()); });
     };

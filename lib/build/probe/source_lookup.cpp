@@ -146,7 +146,7 @@ LookupMoments SourceLookup::moments(int column, int row, const Polygon& polygon)
     // next.
     const int x = column / 2, y = row / 2, x0 = x - 1 + column % 2, y0 = y - 1 + row % 2;
     const TexelPosition at[4] = {texel_beside(map_, x, y, x0, y0), texel_beside(map_, x, y, x0 + 1, y0),
-                              texel_beside(map_, x, y, x0, y0 + 1), texel_beside(map_, x, y, x0 + 1, y0 + 1)};
+                                 texel_beside(map_, x, y, x0, y0 + 1), texel_beside(map_, x, y, x0 + 1, y0 + 1)};
     for (std::uint32_t plane = 0; plane < planes_; ++plane) {
         const Patch patch{{value(plane, at[0]), value(plane, at[1]), value(plane, at[2]), value(plane, at[3])},
                           x0 + 0.5,

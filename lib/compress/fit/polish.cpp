@@ -65,8 +65,8 @@ std::vector<KnotPosition> knot_positions(const Knots& knots, std::size_t i, std:
     return out;
 }
 
-/// The best joint move of all knots: dynamic programming over the knots in order, over a window of knot_positions each.
-/// Returns what it gained.
+/// The best joint move of all knots: dynamic programming over the knots in order, over a window of knot_positions
+/// each. Returns what it gained.
 double move_knots(const PolishedLine& line, std::uint32_t stride, Knots& knots) {
     std::vector<std::vector<KnotPosition>> table{knot_positions(knots, 0, stride)};
     double before = 0.0;

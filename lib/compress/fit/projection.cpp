@@ -146,8 +146,8 @@ private:
     LineSum sums_[kLines];
 };
 
-/// Beside an MIS partner: what slices cost at best takes the place of their flux, and what they cost if left to it comes
-/// with it.
+/// Beside an MIS partner: what slices cost at best takes the place of their flux, and what they cost if left to it
+/// comes with it.
 void add_partner(const Grid& grid, double total, const Box& box, Projections& out) {
     const std::size_t last = grid.dimensions() - 1;
     for (std::size_t axis = 0; axis <= last; ++axis) {

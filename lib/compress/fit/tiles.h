@@ -22,7 +22,7 @@ struct TileTree {
         std::uint32_t child[2] = {};
     };
     std::vector<Split> splits;
-    std::vector<Box> tiles;   ///< one more than splits
+    std::vector<Box> tiles;         ///< one more than splits
     std::uint32_t bright_tiles = 0; ///< tiles of light bright enough for a light, and small enough
 };
 
@@ -60,7 +60,8 @@ struct BrightTileRule {
 /// lowers most the sum over tiles of the light's angular variance, ∫ w L |omega - mean|^2 with w = worth.spread: to
 /// first order, what the cosine to a normal adds to the variance within a tile. Tiles of bright light that are too
 /// large for a light come first.
-TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count, const BrightTileRule& rule = {});
+TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count,
+                      const BrightTileRule& rule = {});
 
 /// The middle of a box in phi and z, or in u and v, and so of its solid angle.
 std::array<double, 3> centre(const Target& target, const Box& box);

@@ -1,10 +1,11 @@
-// Tiles, then curves within them at one price a byte, then a row of probabilities for each bin: docs/local.md.
+// Tiles, then curves within them at one price a byte, then a row of probabilities for each bin:
+// docs/notes/local-method.md.
 #include "compress/local/fit.h"
 
 #include "compress/fit/shared.h"
-#include "compress/local/partner.h"
 #include "compress/local/light.h"
 #include "compress/local/mixed_rows.h"
+#include "compress/local/partner.h"
 #include "compress/local/sums.h"
 #include "compress/local/tile_curves.h"
 #include "compress/local/tile_grids.h"
@@ -43,9 +44,9 @@ std::vector<double> worth_of_tiles(const Target& target, const std::vector<Box>&
 
 constexpr std::uint32_t kManyBrightTiles = 2 * ACDF_MAX_BRIGHT_TILES; // the brightest half of them is taken
 
-/// Tiles, and the rule by which they become bright tiles. Where that of most probes finds many more bright tiles than there may
-/// be, as it does in large bright areas and for normals that nearly all light is hidden from, tiles would be spent
-/// on them in vain: bright tiles are larger then, and only the brightest.
+/// Tiles, and the rule by which they become bright tiles. Where that of most probes finds many more bright tiles
+/// than there may be, as it does in large bright areas and for normals that nearly all light is hidden from, tiles
+/// would be spent on them in vain: bright tiles are larger then, and only the brightest.
 BrightTileRule divide(const Target& target, const Worth& worth, std::uint32_t count, TileTree& tiles) {
     BrightTileRule rule;
     tiles = divide_tiles(target, worth, count, rule);
@@ -60,7 +61,7 @@ BrightTileRule divide(const Target& target, const Worth& worth, std::uint32_t co
 
 /// Tiles of light so bright that, near the horizon, mixing the rows of bins would sample many samples below it.
 std::vector<AcdfBrightTile> find_lights(const Target& target, const TileTree& tiles, const TileInsides& insides,
-                                   double total, const Worth& worth, const BrightTileRule& rule) {
+                                        double total, const Worth& worth, const BrightTileRule& rule) {
     std::vector<std::pair<double, AcdfBrightTile>> found;
     for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
         const Box& box = tiles.tiles[t];
@@ -85,7 +86,8 @@ std::vector<AcdfBrightTile> find_lights(const Target& target, const TileTree& ti
     if (found.size() > ACDF_MAX_BRIGHT_TILES) found.resize(ACDF_MAX_BRIGHT_TILES);
     std::vector<AcdfBrightTile> out;
     for (const auto& light : found) out.push_back(light.second);
-    std::sort(out.begin(), out.end(), [](const AcdfBrightTile& a, const AcdfBrightTile& b) { return a.tile < b.tile; });
+    std::sort(out.begin(), out.end(),
+              [](const AcdfBrightTile& a, const AcdfBrightTile& b) { return a.tile < b.tile; });
     return out;
 }
 
@@ -224,7 +226,8 @@ void LocalFitter::fill_beside(LocalFit& out) const {
     const auto shares_of = [&](std::size_t b) {
         std::vector<double> shares = light.shares(b);
         for (double& share : shares) share /= total;
-        out.records[b] = {light.recommended_light_share(b, shares), static_cast<float>(light_.irradiance[b] / total)};
+        out.records[b] = {light.recommended_light_share(b, shares),
+                          static_cast<float>(light_.irradiance[b] / total)};
         return shares;
     };
     const auto put = [&](std::size_t b, const std::vector<double>& shares) {

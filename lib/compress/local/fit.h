@@ -1,14 +1,14 @@
 // The fit of a local environment map: one probe, for every normal the light above its horizon times the cosine.
 #pragma once
 
-#include "compress/partner.h"
 #include "compress/fit/fit.h"
 #include "compress/fit/tiles.h"
-#include "compress/local/partner.h"
 #include "compress/local/light.h"
 #include "compress/local/normals.h"
+#include "compress/local/partner.h"
 #include "compress/local/tile_curves.h"
 #include "compress/local/tile_grids.h"
+#include "compress/partner.h"
 
 #include <acdf/layout.h>
 
@@ -31,8 +31,9 @@ struct LocalSize {
     LocalShape shape = LocalShape::small; ///< fast: without an MIS partner or a bound on weights
     /// What the whole environment counts beside all normals together where its tree is made of curves in tiles.
     double whole_worth = 0.0;
-    WholeTree whole = WholeTree::of_tiles; ///< of the fast shape, and beside an MIS partner, it has curves of its own
-    std::uint64_t whole_bytes = 16384;     ///< of those, at most
+    WholeTree whole =
+        WholeTree::of_tiles;           ///< of the fast shape, and beside an MIS partner, it has curves of its own
+    std::uint64_t whole_bytes = 16384; ///< of those, at most
     /// What weights are held to, over their mean, as far as bins tell; not beside an MIS partner.
     double max_weight = std::numeric_limits<double>::infinity();
 };
@@ -51,8 +52,8 @@ struct LocalFit {
 /// Fits tiles, what is in them, bright tiles, and the rows of all bins that occur. Deterministic for any number of
 /// threads.
 ///
-/// Beside an MIS partner a share is the flux that is left to the file, rows are 0 where the partner covers a tile, and
-/// records tell the irradiance.
+/// Beside an MIS partner a share is the flux that is left to the file, rows are 0 where the partner covers a tile,
+/// and records tell the irradiance.
 class LocalFitter {
 public:
     /// Divides into tiles; `size.inside_bytes` is of no meaning. Target, bins and their light must outlive it.

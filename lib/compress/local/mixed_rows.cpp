@@ -208,7 +208,8 @@ private:
 
 } // namespace
 
-TileParts mixed_rows(const TileLight& light, const NormalBins& bins, const std::vector<AcdfBrightTile>& bright_tiles) {
+TileParts mixed_rows(const TileLight& light, const NormalBins& bins,
+                     const std::vector<AcdfBrightTile>& bright_tiles) {
     tbb::enumerable_thread_specific<MixedScratch> scratch;
     TileParts own(bins.normals.size());
     parallel_for(std::size_t{0}, own.size(), [&](std::size_t b) {

@@ -18,6 +18,7 @@ using TileParts = std::vector<std::vector<float>>;
 /// neighbours that they do not see; where that samples many samples below a horizon, rows are held back further, so
 /// that variance and samples in vain fall together. A part is positive wherever the corner sees light. `bins` are
 /// those of an octahedron. The same for any number of threads.
-TileParts mixed_rows(const TileLight& light, const NormalBins& bins, const std::vector<AcdfBrightTile>& bright_tiles);
+TileParts mixed_rows(const TileLight& light, const NormalBins& bins,
+                     const std::vector<AcdfBrightTile>& bright_tiles);
 
 } // namespace acdf::compress

@@ -106,8 +106,8 @@ double LocalPartner::share(std::size_t bin, double cosine, double alone, double 
 FilledTiles::FilledTiles(const Target& target, const TileTree& tiles, const TileCurves& curves,
                          const TileCascade& cascade, const std::vector<AcdfBrightTile>& bright_tiles,
                          const LocalPartner& partner, const NormalBins& bins)
-    : target_(target), bright_tiles_(bright_tiles), partner_(partner), bins_(bins), is_light_(tiles.tiles.size(), false),
-      pieces_(tiles.tiles.size()) {
+    : target_(target), bright_tiles_(bright_tiles), partner_(partner), bins_(bins),
+      is_light_(tiles.tiles.size(), false), pieces_(tiles.tiles.size()) {
     for (const AcdfBrightTile& light : bright_tiles) is_light_[light.tile] = true;
     parallel_for(std::size_t{0}, pieces_.size(), [&](std::size_t t) {
         double shares = 0.0, costs = 0.0;

@@ -1,10 +1,10 @@
 // Rows of a local environment map that is made for an MIS partner: what each normal samples beside it.
 #pragma once
 
-#include "compress/partner.h"
 #include "compress/local/horizon.h"
 #include "compress/local/light.h"
 #include "compress/local/tile_curves.h"
+#include "compress/partner.h"
 
 #include <memory>
 #include <vector>
@@ -46,7 +46,8 @@ private:
 class FilledTiles {
 public:
     FilledTiles(const Target& target, const TileTree& tiles, const TileCurves& curves, const TileCascade& cascade,
-                const std::vector<AcdfBrightTile>& bright_tiles, const LocalPartner& partner, const NormalBins& bins);
+                const std::vector<AcdfBrightTile>& bright_tiles, const LocalPartner& partner,
+                const NormalBins& bins);
 
     /// The share of each tile for a bin; 0 for bright tiles, and where the partner covers all.
     std::vector<double> shares(std::size_t bin) const;

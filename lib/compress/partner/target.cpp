@@ -1,8 +1,8 @@
 #include "compress/partner/target.h"
 
-#include "compress/partner/demand.h"
 #include "compress/local/light.h"
 #include "compress/parallel.h"
+#include "compress/partner/demand.h"
 #include "compress/sum.h"
 
 #include <algorithm>

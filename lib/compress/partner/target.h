@@ -1,8 +1,8 @@
 // The target of an environment map that is made for an MIS partner.
 #pragma once
 
-#include "compress/partner.h"
 #include "compress/local/normals.h"
+#include "compress/partner.h"
 #include "compress/target.h"
 
 namespace acdf::compress {

@@ -46,8 +46,8 @@ void accumulate(std::vector<VisibilitySums>& steps, bool from_below) {
 
 } // namespace
 
-VisibilityCells::VisibilityCells(const VisibilityLight& light, const std::vector<VisibilityPoint>& points, const Box& low,
-                       const Box& high, std::uint32_t cells)
+VisibilityCells::VisibilityCells(const VisibilityLight& light, const std::vector<VisibilityPoint>& points,
+                                 const Box& low, const Box& high, std::uint32_t cells)
     : light_(light), points_(points) {
     order_.resize(light.points());
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
@@ -101,8 +101,8 @@ void VisibilityCells::consider(Node& node) const {
         }
 }
 
-VisibilityCells::Division VisibilityCells::consider_axis(const Node& node, const VisibilitySums& sums, std::uint32_t stride,
-                                               std::uint32_t axis) const {
+VisibilityCells::Division VisibilityCells::consider_axis(const Node& node, const VisibilitySums& sums,
+                                                         std::uint32_t stride, std::uint32_t axis) const {
     Division best;
     float low = points_[order_[node.begin]].coordinate(axis), high = low;
     for (std::uint32_t i = node.begin; i < node.end; i += stride) {

@@ -49,8 +49,8 @@ public:
 
     /// At most `cells` cells. `low`, `high`: the box of all. Points and light must outlive this. The same for any
     /// number of threads.
-    VisibilityCells(const VisibilityLight& light, const std::vector<VisibilityPoint>& points, const Box& low, const Box& high,
-               std::uint32_t cells);
+    VisibilityCells(const VisibilityLight& light, const std::vector<VisibilityPoint>& points, const Box& low,
+                    const Box& high, std::uint32_t cells);
 
     std::uint32_t cell_count() const { return cell_count_; }
     /// In preorder, cells numbered in the order of the walk. On both sides of a split as far as `blend` times the
@@ -85,7 +85,8 @@ private:
         float position = 0.0f;
     };
     void consider(Node& node) const;
-    Division consider_axis(const Node& node, const VisibilitySums& sums, std::uint32_t stride, std::uint32_t axis) const;
+    Division consider_axis(const Node& node, const VisibilitySums& sums, std::uint32_t stride,
+                           std::uint32_t axis) const;
     void divide(std::uint32_t index);
     void number(std::uint32_t node);
     double thinnest(std::uint32_t node, std::uint32_t axis, bool at_low) const;

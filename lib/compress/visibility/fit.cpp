@@ -94,7 +94,8 @@ void append(std::vector<std::uint8_t>& bytes, const Record* records, std::size_t
 /// Points of a scene, more of them where cells are small: so many that each cell has about as many.
 class PointsByCell {
 public:
-    PointsByCell(const PointSource& source, std::vector<VisibilityPoint>& points) : source_(source), points_(points) {}
+    PointsByCell(const PointSource& source, std::vector<VisibilityPoint>& points)
+        : source_(source), points_(points) {}
 
     /// Adds points until there are `count`, or no more are found in `most` candidates.
     void add(const AcdfVisibility& header, const std::vector<AcdfVisibilitySplit>& splits, std::uint32_t cells,
@@ -167,8 +168,9 @@ void divide(DividedVisibility& out, const VisibilityParts& parts, const Visibili
         add(kPointsOfDivision * std::size_t{cells} >> shift);
         const double share = std::ldexp(1.0, -int(shift)); // of all
         trace_visibility(parts, out.points, scene.occluded, out.light, -1.0,
-                     [&](double done) { report(before + 0.8 * (share - before) * done); });
-        out.tree = std::make_unique<VisibilityCells>(out.light, out.points, low, high, std::max(cells >> shift, 1u));
+                         [&](double done) { report(before + 0.8 * (share - before) * done); });
+        out.tree =
+            std::make_unique<VisibilityCells>(out.light, out.points, low, high, std::max(cells >> shift, 1u));
         out.splits = out.tree->splits(round + 1 == kRounds ? kBlend : 0.0);
         report(before = share);
     }
@@ -178,8 +180,8 @@ void divide(DividedVisibility& out, const VisibilityParts& parts, const Visibili
 } // namespace
 
 std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, const VisibilityScene& scene,
-                              const VisibilityFrame& frame, const VisibilitySize& size,
-                              const std::function<void(double)>& progress) {
+                                  const VisibilityFrame& frame, const VisibilitySize& size,
+                                  const std::function<void(double)>& progress) {
     if (!local.blend.tiles || local.fast.grid)
         throw std::invalid_argument("bins that do not share tiles, and the fast shape, have no visibility cells");
     const auto report = [&](double share) {

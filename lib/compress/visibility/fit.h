@@ -1,8 +1,8 @@
 // The fit of visibility cells: cells of a scene, and for each what of the light reaches it.
 #pragma once
 
-#include "compress/visibility/light.h"
 #include "compress/store/store.h"
+#include "compress/visibility/light.h"
 
 #include <cstdint>
 #include <functional>
@@ -24,7 +24,7 @@ struct VisibilitySize {
 /// of the scene's points are those of cells. The same for any number of threads. Throws std::invalid_argument where
 /// there are no tiles or no points.
 std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, const VisibilityScene& scene,
-                              const VisibilityFrame& frame, const VisibilitySize& size,
-                              const std::function<void(double)>& progress = {});
+                                  const VisibilityFrame& frame, const VisibilitySize& size,
+                                  const std::function<void(double)>& progress = {});
 
 } // namespace acdf::compress

@@ -26,8 +26,8 @@ Ray shoot(const VisibilityParts& parts, std::size_t part, const VisibilityPoint&
 }
 
 /// Writes what a point is given; returns what of it arrives.
-double trace_point(const VisibilityParts& parts, const VisibilityPoint& point, std::size_t index, const Occluded& occluded,
-                   float* given) {
+double trace_point(const VisibilityParts& parts, const VisibilityPoint& point, std::size_t index,
+                   const Occluded& occluded, float* given) {
     AcdfLocalPoint local;
     acdf_local_at(&parts.local(), point.normal.data(), &local);
     parts.weigh(local, given);
@@ -45,8 +45,9 @@ double trace_point(const VisibilityParts& parts, const VisibilityPoint& point, s
 
 } // namespace
 
-void trace_visibility(const VisibilityParts& parts, const std::vector<VisibilityPoint>& points, const Occluded& occluded,
-                  VisibilityLight& light, double dark, const std::function<void(double)>& progress) {
+void trace_visibility(const VisibilityParts& parts, const std::vector<VisibilityPoint>& points,
+                      const Occluded& occluded, VisibilityLight& light, double dark,
+                      const std::function<void(double)>& progress) {
     const std::size_t known = light.points(), more = points.size() - known;
     light.parts = parts.count();
     light.given.resize(points.size() * light.parts);

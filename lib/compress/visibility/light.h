@@ -69,7 +69,8 @@ struct VisibilityScene {
 /// Shoots a ray for each point and part that is above its horizon, from the points on that `light` does not know
 /// yet. `dark`: of other points of the scene; below 0: as it is found of all these. The same for any number of
 /// threads.
-void trace_visibility(const VisibilityParts& parts, const std::vector<VisibilityPoint>& points, const Occluded& occluded,
-                  VisibilityLight& light, double dark = -1.0, const std::function<void(double)>& progress = {});
+void trace_visibility(const VisibilityParts& parts, const std::vector<VisibilityPoint>& points,
+                      const Occluded& occluded, VisibilityLight& light, double dark = -1.0,
+                      const std::function<void(double)>& progress = {});
 
 } // namespace acdf::compress

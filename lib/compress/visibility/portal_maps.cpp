@@ -18,7 +18,8 @@ using Vector = std::array<double, 3>;
 
 /// Pieces of a portal along each side: how closely cosines and what hides it are followed.
 constexpr std::uint32_t kPieces = 4;
-/// Cells of a map along each axis: finer ones tell little more, and coarser ones much less (docs/notes/visibility.md).
+/// Cells of a map along each axis: finer ones tell little more, and coarser ones much less
+/// (docs/notes/visibility.md).
 constexpr std::uint32_t kFinest = 256, kCoarsest = 64;
 /// Visibility along each axis of a cell where light is looked up, at least and at most: as fine as the probe is.
 constexpr int kFewest = 4, kMost = 32;

@@ -11,8 +11,8 @@
 
 namespace acdf::compress {
 
-/// A rectangle that light comes through, among the cells of visibility: a corner and two sides at right angles. Light
-/// comes from the side that across x up points to.
+/// A rectangle that light comes through, among the cells of visibility: a corner and two sides at right angles.
+/// Light comes from the side that across x up points to.
 struct PortalRectangle {
     std::array<double, 3> corner{}, across{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0};
 };

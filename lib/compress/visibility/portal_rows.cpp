@@ -69,8 +69,8 @@ public:
 private:
     bool is_met(const VisibilityPoint& point, const float* d) const { return occluded_(point, {d[0], d[1], d[2]}); }
 
-    void trace_portal(std::size_t i, const VisibilityPoint& point, std::uint32_t portal, AcdfVisiblePortal& visible_portal,
-                      PortalLight& out) const {
+    void trace_portal(std::size_t i, const VisibilityPoint& point, std::uint32_t portal,
+                      AcdfVisiblePortal& visible_portal, PortalLight& out) const {
         const std::uint32_t pieces = table_.header->pieces;
         double all[kMostPieces];
         std::fill_n(all, kMostPieces, 1.0);
@@ -89,7 +89,8 @@ private:
             }
     }
 
-    float other_ways(std::size_t i, const VisibilityPoint& point, const AcdfVisiblePortal* visible_portals, std::uint32_t count) const {
+    float other_ways(std::size_t i, const VisibilityPoint& point, const AcdfVisiblePortal* visible_portals,
+                     std::uint32_t count) const {
         AcdfLocalPoint row;
         acdf_local_at(&local_, point.normal.data(), &row);
         if (row.what != ACDF_LOCAL_BLEND) return 0.0f;
@@ -99,9 +100,10 @@ private:
                                                                spread(kRays * i + r, 0, kSteps[1]));
             if (!(s.pdf > 0.0f) || !above(point, s.direction)) continue;
             const double d[3] = {double{s.direction[0]}, double{s.direction[1]}, double{s.direction[2]}};
-            const bool through = std::any_of(visible_portals, visible_portals + count, [&](const AcdfVisiblePortal& visible_portal) {
-                return acdf_visible_portal_pdf(&table_, &visible_portal, d) > 0.0;
-            });
+            const bool through =
+                std::any_of(visible_portals, visible_portals + count, [&](const AcdfVisiblePortal& visible_portal) {
+                    return acdf_visible_portal_pdf(&table_, &visible_portal, d) > 0.0;
+                });
             arrives += !through && !is_met(point, s.direction);
         }
         return static_cast<float>(row.sum / row.length * arrives / kRays);
@@ -167,8 +169,8 @@ double mean_light(const PortalRays& rays, const PortalSet& set, const std::vecto
 
 /// Sums over the points of cells from `begin` on, of which each is looked at once.
 std::vector<CellSums> sum_up_cells(const PortalRays& rays, const std::vector<VisibleShare>& shares,
-                                   const std::vector<VisibilityPoint>& points, std::uint32_t begin, std::uint32_t end,
-                                   std::size_t parts, double dark) {
+                                   const std::vector<VisibilityPoint>& points, std::uint32_t begin,
+                                   std::uint32_t end, std::size_t parts, double dark) {
     const auto first_of = [&](std::uint32_t cell) {
         return std::lower_bound(shares.begin(), shares.end(), cell,
                                 [](const VisibleShare& s, std::uint32_t c) { return s.cell < c; });

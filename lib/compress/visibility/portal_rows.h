@@ -1,9 +1,9 @@
 // What cells of visibility tell of portals: how much of each piece is seen, and what comes in another way.
 #pragma once
 
+#include "compress/store/store.h"
 #include "compress/visibility/portal_maps.h"
 #include "compress/visibility/rows.h"
-#include "compress/store/store.h"
 
 #include <cstdint>
 #include <vector>

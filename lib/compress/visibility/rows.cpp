@@ -15,7 +15,7 @@ constexpr std::size_t kEach = 8;
 struct Region {
     std::vector<VisibilityPoint> points;
     std::vector<VisibleShare> shares;
-    std::vector<VisibilitySums> sums;            ///< one a cell
+    std::vector<VisibilitySums> sums;       ///< one a cell
     std::vector<std::vector<float>> priors; ///< of the cells around it, one a cell
 };
 
@@ -47,7 +47,8 @@ void sum_up(Region& region, const VisibilityLight& light, const VisibilityCells:
 }
 
 /// Factors of the cells around each, as far as they are of the region.
-void find_priors(Region& region, const VisibilityCells& tree, const VisibilityCells::Range& range, std::size_t parts) {
+void find_priors(Region& region, const VisibilityCells& tree, const VisibilityCells::Range& range,
+                 std::size_t parts) {
     constexpr float kUnknown = 0.7f; // half of it arrives
     region.priors.clear();
     for (std::uint32_t cell = range.begin; cell < range.end; ++cell) {
@@ -99,7 +100,7 @@ double moment_of_others(const Region& region, const VisibilityLight& light, cons
             const float all = std::fabs(given[p]), seen = std::max(given[p], 0.0f);
             const float factor =
                 visible_factor(std::max(cell.all[p] - share.weight * all, 0.0f),
-                             std::max(cell.seen[p] - share.weight * seen, 0.0f), others, prior[p], caution);
+                               std::max(cell.seen[p] - share.weight * seen, 0.0f), others, prior[p], caution);
             arrives += double{seen / factor};
             sampled += double{all * factor};
         }
@@ -136,7 +137,8 @@ std::uint8_t visibility_code(double factor) {
     return static_cast<std::uint8_t>(low);
 }
 
-CellNumbers::CellNumbers(const AcdfVisibility& header, const std::vector<AcdfVisibilitySplit>& splits, std::uint32_t cells)
+CellNumbers::CellNumbers(const AcdfVisibility& header, const std::vector<AcdfVisibilitySplit>& splits,
+                         std::uint32_t cells)
     : header_(header), rows_(cells, 0) {
     header_.column_count = 0; // rows of one byte: a row's address is its number
     header_.split_count = static_cast<std::uint32_t>(splits.size());
@@ -163,9 +165,9 @@ std::vector<VisibleShare> shares_of(const CellNumbers& numbers, const std::vecto
     return out;
 }
 
-VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityCells& tree, const VisibilityCells::Range& range,
-                     const std::vector<VisibleShare>& shares, const std::vector<VisibilityPoint>& points,
-                     const Occluded& occluded, double dark) {
+VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityCells& tree,
+                               const VisibilityCells::Range& range, const std::vector<VisibleShare>& shares,
+                               const std::vector<VisibilityPoint>& points, const Occluded& occluded, double dark) {
     Region region = region_of(range, shares, points);
     VisibilityLight light;
     trace_visibility(parts, region.points, occluded, light, dark);
@@ -180,7 +182,7 @@ VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityCel
         out.all.insert(out.all.end(), known.all.begin(), known.all.end());
         for (std::size_t p = 0; p < light.parts; ++p)
             out.factors.push_back(visible_factor(known.all[p], known.seen[p], std::max(known.points, 1e-6f),
-                                               region.priors[cell][p], caution));
+                                                 region.priors[cell][p], caution));
     }
     return out;
 }

@@ -55,8 +55,8 @@ struct VisibilityRows {
 
 /// Shoots rays to `parts` from all points that count for the cells of `range`. Factors have the caution that serves
 /// best points that rows have not seen: each by what the others tell. `dark`: as of trace_visibility.
-VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityCells& tree, const VisibilityCells::Range& range,
-                     const std::vector<VisibleShare>& shares, const std::vector<VisibilityPoint>& points,
-                     const Occluded& occluded, double dark);
+VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityCells& tree,
+                               const VisibilityCells::Range& range, const std::vector<VisibleShare>& shares,
+                               const std::vector<VisibilityPoint>& points, const Occluded& occluded, double dark);
 
 } // namespace acdf::compress

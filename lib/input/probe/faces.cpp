@@ -66,6 +66,11 @@ Image black(int width, int height) {
     return image;
 }
 
+bool same_luminance(const Image& a, const Image& b) {
+    if (!a.luminance || !b.luminance) return a.luminance.has_value() == b.luminance.has_value();
+    return a.luminance->r == b.luminance->r && a.luminance->g == b.luminance->g && a.luminance->b == b.luminance->b;
+}
+
 /// Copies n x n texels from (x0, y0) of an image to (x1, y1) of another, maybe from the right to the left.
 void copy_face(const Image& from, int x0, int y0, Image& to, int x1, int y1, int n, bool mirrored) {
     for (int y = 0; y < n; ++y) {
@@ -86,6 +91,8 @@ void check_sizes(const std::vector<std::string>& paths, const std::vector<Image>
         if (image.width != images[0].width)
             throw input_error(path, shape(image) + " is not as large as the first of the six faces, " +
                                         shape(images[0]) + "; scale it");
+        if (!same_luminance(image, images[0]))
+            throw input_error(path, "its primaries are not those of the first of the six faces; convert it");
     }
 }
 
@@ -108,6 +115,8 @@ Image assemble(const std::vector<std::string>& paths, std::vector<Image> images,
     const bool cross = faces.frame != Faces::Frame::openexr, mirrored = faces.frame == Faces::Frame::opengl;
     layout = cross ? build::Layout::horizontal_cross : build::Layout::stacked_cube;
     Image map = black(cross ? 4 * n : n, cross ? 3 * n : 6 * n);
+    map.luminance = images[0].luminance;
+    map.half = std::all_of(images.begin(), images.end(), [](const Image& image) { return image.half; });
     for (std::size_t i = 0; i < kFaces; ++i) {
         const CrossPosition at = cross_positions(faces.frame)[faces.order[i]];
         copy_face(images[i], 0, 0, map, at.column * n, at.row * n, n, mirrored);
@@ -126,6 +135,8 @@ std::vector<Image> cut_strip(const std::string& path, const Image& strip) {
         std::vector<Image> faces;
         for (int i = 0; i < static_cast<int>(kFaces); ++i) {
             faces.push_back(black(n, n));
+            faces.back().half = strip.half;
+            faces.back().luminance = strip.luminance;
             copy_face(strip, i % columns * n, i / columns * n, faces.back(), 0, 0, n, false);
         }
         faces[0].warnings = strip.warnings;

@@ -22,7 +22,8 @@ bool counts(const AcdfDirectionSample& s, const ShadingPoint& point, Tally& tall
     return true;
 }
 
-/// Samples n samples of the set of numbers that has begun, several at once: use(sample) of those that may contribute.
+/// Samples n samples of the set of numbers that has begun, several at once: use(sample) of those that may
+/// contribute.
 template <class Use>
 void draw(const PointSampler& sampler, const ShadingPoint& point, std::uint64_t n, Random& random, Tally& tally,
           const Use& use) {
@@ -100,7 +101,8 @@ private:
         for (const std::uint32_t n : given_) all += n;
         const std::uint32_t others = all - given_[automatic_];
         const auto least = static_cast<double>(parts_.size() - 1);
-        const double own = std::round(static_cast<double>(parts_[automatic_].sampler->recommended_light_share()) * all);
+        const double own =
+            std::round(static_cast<double>(parts_[automatic_].sampler->recommended_light_share()) * all);
         parts_[automatic_].n = std::clamp(own, 1.0, std::max(1.0, all - least));
         const double left = all - parts_[automatic_].n;
         std::uint32_t before = 0; // sums are rounded, not what each gets: together it is all that is left

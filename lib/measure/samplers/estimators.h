@@ -1,7 +1,7 @@
 // What is done with samplers: one, several, or candidates of one that are resampled.
 //
-// Each sampler samples one set of numbers an estimate (Random). The integrand is 0 below the horizon: it is evaluated
-// above it alone.
+// Each sampler samples one set of numbers an estimate (Random). The integrand is 0 below the horizon: it is
+// evaluated above it alone.
 #pragma once
 
 #include "measure/samplers/estimator.h"

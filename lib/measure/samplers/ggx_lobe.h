@@ -1,4 +1,5 @@
-// GgxSampler as product sampling asks for a lobe (acdf/product/lobe.h). Its density over the cosine stands for the BRDF.
+// GgxSampler as product sampling asks for a lobe (acdf/product/lobe.h). Its density over the cosine stands for the
+// BRDF.
 #pragma once
 
 #include "measure/samplers/brdf_samplers.h"

@@ -1,4 +1,5 @@
-// What all samplers of incident light have in common, ours and their baselines: what renderings and timings compare.
+// What all samplers of incident light have in common, ours and their baselines: what renderings and timings
+// compare.
 #pragma once
 
 #include <acdf/sample.h>
@@ -24,8 +25,8 @@ public:
 
     /// Does whatever the sampler has to do once for all samples of a point.
     virtual void move_to(const ShadingPoint& point) = 0;
-    /// u0, u1 in [0, 1). A pdf of 0: nothing was sampled (the sample counts, as 0). Directions below the horizon keep
-    /// their pdf: the integrand is 0 there.
+    /// u0, u1 in [0, 1). A pdf of 0: nothing was sampled (the sample counts, as 0). Directions below the horizon
+    /// keep their pdf: the integrand is 0 there.
     virtual AcdfDirectionSample sample(double u0, double u1) const = 0;
     /// The same of u[i] into out[i], i < count.
     virtual void samples(std::size_t count, const double (*u)[2], AcdfDirectionSample* out) const {

@@ -72,7 +72,8 @@ struct LocalFile {
     const File& file;
     LocalEnvironmentView view{file.local()};
     bool visibility;
-    LocalFile(const File& f, bool with_visibility) : file(f), visibility(with_visibility && view.has_visibility()) {}
+    LocalFile(const File& f, bool with_visibility)
+        : file(f), visibility(with_visibility && view.has_visibility()) {}
     std::uint64_t bytes() const { return file.size(); }
 };
 

@@ -24,7 +24,8 @@ using LightSamplerPtr = std::unique_ptr<LightSampler>;
 
 // ---- of the light ----
 
-/// FullCdf. Directions below the horizon are sampled in vain, as where "rejection" rejects them and samples no others.
+/// FullCdf. Directions below the horizon are sampled in vain, as where "rejection" rejects them and samples no
+/// others.
 LightSamplerPtr full_cdf_sampler(const compress::Target& target);
 /// TilingOnTheFly, of columns x rows tiles.
 LightSamplerPtr tiling_sampler(const compress::Target& target, std::uint32_t columns, std::uint32_t rows);

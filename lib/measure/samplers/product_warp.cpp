@@ -69,8 +69,7 @@ public:
         else throw std::invalid_argument("the light of a product is an environment or a local environment");
         if (local_.cosine_share > 0.0 || file.partner())
             throw std::invalid_argument("a file for an MIS partner has no support alone");
-        if (local_.fast.grid)
-            throw std::invalid_argument("a file of the fast shape has no inverse");
+        if (local_.fast.grid) throw std::invalid_argument("a file of the fast shape has no inverse");
     }
     bool has_cosine() const { return is_local_; }
     void move_to(const float normal[3]) {

@@ -1,4 +1,5 @@
-// A mesh as a matte scene under the light of a probe, and points all over it: where files with visibility cells are measured.
+// A mesh as a matte scene under the light of a probe, and points all over it: where files with visibility cells are
+// measured.
 #pragma once
 
 #include "compress/target.h"

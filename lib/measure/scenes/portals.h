@@ -1,6 +1,7 @@
 // Portals: rectangles, told by hand, that light comes through. What renderers have for rooms, to compare with.
 //
-// Directions that reach no portal are never sampled: where light comes another way, these samplers are biased alone.
+// Directions that reach no portal are never sampled: where light comes another way, these samplers are biased
+// alone.
 #pragma once
 
 #include "compress/target.h"

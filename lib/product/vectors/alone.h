@@ -1,4 +1,5 @@
-// Single calls of cuts, for what vectors leave to them: compiled once, and not into the loops of each kind of instructions.
+// Single calls of cuts, for what vectors leave to them: compiled once, and not into the loops of each kind of
+// instructions.
 #pragma once
 
 #include <acdf/product/cut_sample.h>

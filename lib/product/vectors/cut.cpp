@@ -24,8 +24,18 @@ void brdf_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[
 
 const AcdfProductVectors* product_vectors(Instructions most) noexcept {
 #if ACDF_BATCH_X86
-    static constexpr AcdfProductVectors avx2 = {cut_sample_avx2, cut_pdf_avx2, fast_cut_sample_avx2, fast_cut_pdf_avx2, brdf_sample<Instructions::avx2>, brdf_pdf<Instructions::avx2>};
-    static constexpr AcdfProductVectors avx512 = {cut_sample_avx512, cut_pdf_avx512, fast_cut_sample_avx512, fast_cut_pdf_avx512, brdf_sample<Instructions::avx512>, brdf_pdf<Instructions::avx512>};
+    static constexpr AcdfProductVectors avx2 = {cut_sample_avx2,
+                                                cut_pdf_avx2,
+                                                fast_cut_sample_avx2,
+                                                fast_cut_pdf_avx2,
+                                                brdf_sample<Instructions::avx2>,
+                                                brdf_pdf<Instructions::avx2>};
+    static constexpr AcdfProductVectors avx512 = {cut_sample_avx512,
+                                                  cut_pdf_avx512,
+                                                  fast_cut_sample_avx512,
+                                                  fast_cut_pdf_avx512,
+                                                  brdf_sample<Instructions::avx512>,
+                                                  brdf_pdf<Instructions::avx512>};
     return best_of<const AcdfProductVectors*>(most, nullptr, &avx2, &avx512);
 #else
     (void)most;

@@ -13,19 +13,20 @@ const AcdfProductVectors* product_vectors(Instructions most = Instructions::avx5
 
 #if ACDF_BATCH_X86
 void cut_sample_avx2(const AcdfLocal*, const AcdfLocalPoint*, const AcdfCut*, const double (*)[2], std::size_t,
-                AcdfDirectionSample*);
+                     AcdfDirectionSample*);
 void cut_pdf_avx2(const AcdfLocal*, const AcdfLocalPoint*, const AcdfCut*, const float (*)[3], std::size_t, float*);
 void fast_cut_sample_avx2(const AcdfLocal*, const AcdfLocalPoint*, const AcdfFastCut*, const double (*)[2],
-                     std::size_t, AcdfDirectionSample*);
+                          std::size_t, AcdfDirectionSample*);
 void fast_cut_pdf_avx2(const AcdfLocal*, const AcdfLocalPoint*, const AcdfFastCut*, const float (*)[3], std::size_t,
-                  float*);
+                       float*);
 void cut_sample_avx512(const AcdfLocal*, const AcdfLocalPoint*, const AcdfCut*, const double (*)[2], std::size_t,
-                AcdfDirectionSample*);
-void cut_pdf_avx512(const AcdfLocal*, const AcdfLocalPoint*, const AcdfCut*, const float (*)[3], std::size_t, float*);
+                       AcdfDirectionSample*);
+void cut_pdf_avx512(const AcdfLocal*, const AcdfLocalPoint*, const AcdfCut*, const float (*)[3], std::size_t,
+                    float*);
 void fast_cut_sample_avx512(const AcdfLocal*, const AcdfLocalPoint*, const AcdfFastCut*, const double (*)[2],
-                     std::size_t, AcdfDirectionSample*);
-void fast_cut_pdf_avx512(const AcdfLocal*, const AcdfLocalPoint*, const AcdfFastCut*, const float (*)[3], std::size_t,
-                  float*);
+                            std::size_t, AcdfDirectionSample*);
+void fast_cut_pdf_avx512(const AcdfLocal*, const AcdfLocalPoint*, const AcdfFastCut*, const float (*)[3],
+                         std::size_t, float*);
 #endif
 
 } // namespace acdf

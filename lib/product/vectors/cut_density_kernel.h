@@ -1,4 +1,5 @@
-// Densities of cuts (acdf/product/cut_sample.h) over vectors, operation by operation. Internal linkage: see local_kernel.h.
+// Densities of cuts (acdf/product/cut_sample.h) over vectors, operation by operation. Internal linkage: see
+// local_kernel.h.
 #pragma once
 
 #include "batch/local_density_kernel.h"

@@ -1,5 +1,5 @@
-// Samples from cuts (acdf/product/cut_sample.h) over vectors, operation by operation: the way to a part and its bright tiles here,
-// tiles and directions as LocalBatch samples them. Internal linkage: see local_kernel.h.
+// Samples from cuts (acdf/product/cut_sample.h) over vectors, operation by operation: the way to a part and its
+// bright tiles here, tiles and directions as LocalBatch samples them. Internal linkage: see local_kernel.h.
 #pragma once
 
 #include "batch/local_kernel.h"
@@ -51,24 +51,25 @@ ACDF_LANE void find_parts(const AcdfCut& cut, const double (*given)[2], std::siz
     }
 }
 
-// ---- bright tiles and mixtures ---------------------------------------------------------------------------------------
+// ---- bright tiles and mixtures
+// ---------------------------------------------------------------------------------------
 
 /* acdf_cut_sample_bright_tile of the lanes of a mask, into cells. */
-ACDF_LANE void draw_cut_lights(const AcdfLocal& local, const AcdfCut& cut, const DrawnParts& sampled, std::size_t at,
-                               unsigned mask, Cells* cells) {
+ACDF_LANE void draw_cut_lights(const AcdfLocal& local, const AcdfCut& cut, const DrawnParts& sampled,
+                               std::size_t at, unsigned mask, Cells* cells) {
     for (; mask; mask &= mask - 1) {
         const std::size_t lane = at + acdf_lowest_bit(mask), to = cells->count++;
         double u[2] = {sampled.u[0][lane], sampled.u[1][lane]};
         AcdfRange range[2];
-        cells->tile[to] =
-            acdf_cut_sample_bright_tile(&local, &cut, &cut.part[sampled.part[lane]], u, range, &cells->probability[to]);
+        cells->tile[to] = acdf_cut_sample_bright_tile(&local, &cut, &cut.part[sampled.part[lane]], u, range,
+                                                      &cells->probability[to]);
         for (int axis = 0; axis < 2; ++axis) cells->u[axis][to] = u[axis];
         cells->lane[to] = (long long)lane;
     }
 }
 
-/* acdf_cut_samples_bright_tile, and what samples from a part's mixture begins its walk. Returns the lanes that neither does:
- * those of mixtures without weight. */
+/* acdf_cut_samples_bright_tile, and what samples from a part's mixture begins its walk. Returns the lanes that
+ * neither does: those of mixtures without weight. */
 ACDF_LANE unsigned enter_parts(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
                                const DrawnParts& sampled, std::size_t at, unsigned there, CutWalks* walks,
                                Cells* cells) {
@@ -81,10 +82,11 @@ ACDF_LANE unsigned enter_parts(const AcdfLocal& local, const AcdfLocalPoint& poi
     static_assert(offsetof(AcdfCutPart, sum) == offsetof(AcdfCutPart, bright_tiles) + 8 &&
                   offsetof(AcdfCutPart, node) == offsetof(AcdfCutPart, probability) + 8 &&
                   offsetof(AcdfCutPart, entry) == offsetof(AcdfCutPart, node) + 2);
-    const Vector u[2] = {loaded(&sampled.u[0][at]), loaded(&sampled.u[1][at])}, bright_tiles = sums[0], sum = sums[1];
+    const Vector u[2] = {loaded(&sampled.u[0][at]), loaded(&sampled.u[1][at])}, bright_tiles = sums[0],
+                 sum = sums[1];
     const Vector of_lights = u[0] * sum, mixture = (rows[0] + rows[1]) + last[0];
-    const Mask lit =
-        both(less(all(0.0), bright_tiles), either(less(of_lights, bright_tiles), without(all_lanes(), less(bright_tiles, sum))));
+    const Mask lit = both(less(all(0.0), bright_tiles),
+                          either(less(of_lights, bright_tiles), without(all_lanes(), less(bright_tiles, sum))));
     const unsigned light = lanes(lit) & there, mixed = lanes(less(all(0.0), mixture)) & (there ^ light);
     const Vector own = unit_interval((of_lights - bright_tiles) / (sum - bright_tiles));
     const std::size_t to = walks->count;

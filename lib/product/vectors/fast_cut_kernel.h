@@ -1,6 +1,6 @@
-// Samples from cuts of the fast shape over vectors, and their densities: acdf/product/fast_cut.h, operation by operation; see
-// local_kernel.h. Parts and tiles are found lane by lane, cells and directions by vectors, as fast_kernel.h has
-// them.
+// Samples from cuts of the fast shape over vectors, and their densities: acdf/product/fast_cut.h, operation by
+// operation; see local_kernel.h. Parts and tiles are found lane by lane, cells and directions by vectors, as
+// fast_kernel.h has them.
 #pragma once
 
 #include "batch/fast_density_kernel.h"

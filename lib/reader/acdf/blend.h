@@ -2,9 +2,9 @@
  * CUDA/HIP/SYCL, with the same contract (SPEC.md §5.6, §6.7).
  *
  * Boxes are split in two until tiles are left. Splits and tiles are stored once; each bin has a *row* of one byte a
- * split: the probability of its lower part. What a caller samples from is a *mixture* of up to four rows, walked side
- * by side: its density is exactly the weighted sum of theirs, at the price of one more byte read a split and row.
- * Within a tile a tree of curves refines, for all bins alike. */
+ * split: the probability of its lower part. What a caller samples from is a *mixture* of up to four rows, walked
+ * side by side: its density is exactly the weighted sum of theirs, at the price of one more byte read a split and
+ * row. Within a tile a tree of curves refines, for all bins alike. */
 #ifndef ACDF_BLEND_H
 #define ACDF_BLEND_H
 

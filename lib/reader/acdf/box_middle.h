@@ -1,4 +1,5 @@
-/* The direction of the middle of a box of grid steps. One freestanding header, valid C99, C++17 and CUDA/HIP/SYCL. */
+/* The direction of the middle of a box of grid steps. One freestanding header, valid C99, C++17 and CUDA/HIP/SYCL.
+ */
 #ifndef ACDF_BOX_MIDDLE_H
 #define ACDF_BOX_MIDDLE_H
 

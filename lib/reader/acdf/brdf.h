@@ -44,7 +44,7 @@ ACDF_FN double acdf_brdf_fraction(const AcdfRange* range, double position) {
 
 /* Density of wi: that of its place in a cell of probability p (0: none), and the cosine's share. */
 ACDF_FN float acdf_brdf_cell_pdf(const AcdfBrdf* brdf, double p, const AcdfRange range[2],
-                                const AcdfBrdfPosition* place, const float wi[3]) {
+                                 const AcdfBrdfPosition* place, const float wi[3]) {
     const double floor = (double)brdf->views->diffuse_share;
     double pdf = 0.0;
     int axis;
@@ -197,8 +197,8 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_brdf_walk(const AcdfBrdf* brdf, con
     return acdf_brdf_view(brdf, wo, &view) ? acdf_brdf_view_walk(brdf, &view, u0, u1) : nothing;
 }
 
-/* Samples wi for wo; u0 (phi_h) and u1 (theta_h) in [0, 1]; values outside are clamped, NaN counts as 0. Monotone in
- * each of them within a cell. pdf 0 (and no direction) for wo that are not unit vectors above the surface. */
+/* Samples wi for wo; u0 (phi_h) and u1 (theta_h) in [0, 1]; values outside are clamped, NaN counts as 0. Monotone
+ * in each of them within a cell. pdf 0 (and no direction) for wo that are not unit vectors above the surface. */
 ACDF_FN AcdfDirectionSample acdf_brdf_sample(const AcdfBrdf* brdf, const float wo[3], double u0, double u1) {
 #ifdef ACDF_BRDF_GUESSES
     AcdfDirectionSample out;
@@ -251,7 +251,8 @@ ACDF_FN int acdf_brdf_stays(const AcdfBrdf* brdf, const AcdfBrdfView* view, cons
         at[axis] = (double)range[axis].low + t[axis] * wide;
     }
     acdf_brdf_reflect(brdf, view, at, sign, wi, margin);
-    return acdf_brdf_half_position(brdf, view, wi, &place, &side) && acdf_brdf_inside(range, place.position, nothing);
+    return acdf_brdf_half_position(brdf, view, wi, &place, &side) &&
+           acdf_brdf_inside(range, place.position, nothing);
 }
 
 /* The random numbers u[2] for which acdf_brdf_sample returns wi for wo, through the half-vector. Returns 1, or 0

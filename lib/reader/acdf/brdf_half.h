@@ -15,7 +15,8 @@ typedef struct AcdfBrdfPosition {
 } AcdfBrdfPosition;
 
 /* wo + wi and its length. Returns 0 where wi is not of unit length or opposite to wo. */
-ACDF_INLINE int acdf_brdf_half(const AcdfBrdfView* view, const float wi[3], double half[3], AcdfBrdfPosition* place) {
+ACDF_INLINE int acdf_brdf_half(const AcdfBrdfView* view, const float wi[3], double half[3],
+                               AcdfBrdfPosition* place) {
     const double x = wi[0], y = wi[1], z = wi[2], length2 = x * x + y * y + z * z;
     half[0] = view->wo[0] + x;
     half[1] = view->wo[1] + y;
@@ -52,7 +53,7 @@ ACDF_INLINE void acdf_brdf_position(const AcdfBrdf* brdf, const AcdfBrdfView* vi
 /* Place of the half-vector of wo and wi; `sign` is on which side of the mirror it lies. Returns 0 where wi is not
  * of unit length or opposite to wo. */
 ACDF_INLINE int acdf_brdf_half_position(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3],
-                                AcdfBrdfPosition* place, double* sign) {
+                                        AcdfBrdfPosition* place, double* sign) {
     double half[3];
     if (!acdf_brdf_half(view, wi, half, place)) return 0;
     acdf_brdf_position(brdf, view, half, place->length, place->position, sign);

@@ -146,7 +146,7 @@ ACDF_OUTLINE uint32_t acdf_brdf_pair_walk(const AcdfBrdf* brdf, const uint8_t* r
  * the cell across that side is. Returns the cell's probability; 0 where there is nothing to sample, and where all
  * that is left of the weight is below the random numbers. */
 ACDF_INLINE double acdf_brdf_pair_sample_cell(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double u[2],
-                                       __m128d* left, const AcdfBrdfPath** sampled) {
+                                              __m128d* left, const AcdfBrdfPath** sampled) {
     const AcdfBrdfTables* tables = brdf->tables;
     const double* codes = (const double*)acdf_brdf_words(tables, tables->codes);
     const AcdfBrdfPath* paths = (const AcdfBrdfPath*)acdf_brdf_words(tables, tables->paths);
@@ -202,8 +202,8 @@ ACDF_INLINE __m128d acdf_pair_doubles(const int32_t of[2]) {
     return _mm_cvtepi32_pd(_mm_loadl_epi64((const __m128i*)(const void*)of));
 }
 
-/* acdf_brdf_view_sample, of tables that have guesses. Returns 0 where there is nothing to sample, and where rounding
- * wi may carry it over the border of its cell: then the walk is to be asked. */
+/* acdf_brdf_view_sample, of tables that have guesses. Returns 0 where there is nothing to sample, and where
+ * rounding wi may carry it over the border of its cell: then the walk is to be asked. */
 ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0, double u1,
                                       AcdfDirectionSample* out) {
     const AcdfBrdfTables* tables = brdf->tables;
@@ -234,8 +234,8 @@ ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* 
     return 1;
 }
 
-/* About what acdf_brdf_pair_sample samples, for a third of its time: the middle of the cell that is guessed, and the
- * density there. Returns 0 where there is none. */
+/* About what acdf_brdf_pair_sample samples, for a third of its time: the middle of the cell that is guessed, and
+ * the density there. Returns 0 where there is none. */
 ACDF_INLINE int acdf_brdf_pair_about(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0, double u1,
                                      AcdfDirectionSample* out) {
     const AcdfBrdfTables* tables = brdf->tables;

@@ -51,8 +51,8 @@ typedef struct AcdfBrdfPath {
 } AcdfBrdfPath;
 ACDF_STATIC_ASSERT(sizeof(AcdfBrdfPath) == 64);
 
-/* A way to go at a split: bit i, whether samples go there of whose random numbers it is true (i & 1) that the one for
- * axis 0 lies below the border, and (i & 2) the one for axis 1. */
+/* A way to go at a split: bit i, whether samples go there of whose random numbers it is true (i & 1) that the one
+ * for axis 0 lies below the border, and (i & 2) the one for axis 1. */
 ACDF_INLINE uint32_t acdf_brdf_way(uint32_t axis, uint32_t upper) {
     return (axis ? 0xCu : 0xAu) ^ (upper ? 15u : 0u);
 }

@@ -37,7 +37,8 @@ ACDF_INLINE AcdfHorizon acdf_horizon(const AcdfLocalPoint* point) {
     out.length = _mm_set1_pd(point->length);
     return out;
 }
-ACDF_INLINE AcdfTwoWeights acdf_bright_tile_pair_weights(const AcdfBrightTilePair* pair, const AcdfHorizon* horizon) {
+ACDF_INLINE AcdfTwoWeights acdf_bright_tile_pair_weights(const AcdfBrightTilePair* pair,
+                                                         const AcdfHorizon* horizon) {
     const __m128d height = _mm_add_pd(_mm_add_pd(_mm_mul_pd(horizon->normal[0], _mm_loadu_pd(pair->direction[0])),
                                                  _mm_mul_pd(horizon->normal[1], _mm_loadu_pd(pair->direction[1]))),
                                       _mm_mul_pd(horizon->normal[2], _mm_loadu_pd(pair->direction[2])));
@@ -63,7 +64,8 @@ ACDF_INLINE AcdfHorizon acdf_horizon(const AcdfLocalPoint* point) {
     out.point = point;
     return out;
 }
-ACDF_INLINE AcdfTwoWeights acdf_bright_tile_pair_weights(const AcdfBrightTilePair* pair, const AcdfHorizon* horizon) {
+ACDF_INLINE AcdfTwoWeights acdf_bright_tile_pair_weights(const AcdfBrightTilePair* pair,
+                                                         const AcdfHorizon* horizon) {
     AcdfTwoWeights out;
     int i;
     for (i = 0; i < 2; ++i)

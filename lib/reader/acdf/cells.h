@@ -3,8 +3,8 @@
 #ifndef ACDF_CELLS_H
 #define ACDF_CELLS_H
 
-#include <acdf/pieces.h>
 #include <acdf/octahedral_float.h>
+#include <acdf/pieces.h>
 #include <acdf/sphere.h>
 #include <acdf/squares.h>
 

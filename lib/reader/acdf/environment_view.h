@@ -1,5 +1,6 @@
-// The view of an environment file. C++17, freestanding over acdf/sample.h. For kernels define ACDF_FN and ACDF_METHOD,
-// for example as `static inline __host__ __device__` and __host__ __device__. acdf/views.h has those of other kinds.
+// The view of an environment file. C++17, freestanding over acdf/sample.h. For kernels define ACDF_FN and
+// ACDF_METHOD, for example as `static inline __host__ __device__` and __host__ __device__. acdf/views.h has those
+// of other kinds.
 #pragma once
 
 #include <acdf/method.h>

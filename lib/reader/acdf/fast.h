@@ -3,8 +3,8 @@
  * searched by vectors: no walk, no branch on the data. Part of acdf/local.h; freestanding, valid C99, C++17 and
  * CUDA/HIP/SYCL.
  *
- * All that decides which tile is sampled, and with which probability, are integers: so samples and densities agree to
- * the last bit, with vectors or without. */
+ * All that decides which tile is sampled, and with which probability, are integers: so samples and densities agree
+ * to the last bit, with vectors or without. */
 #ifndef ACDF_FAST_H
 #define ACDF_FAST_H
 
@@ -47,8 +47,8 @@ typedef struct AcdfFastMixture {
     double whole;                          /* their sum */
 } AcdfFastMixture;
 
-/* Row i of a mixture. What a sample looks at first is asked for, while something else is done; where nothing will be
- * sampled, it is left open. */
+/* Row i of a mixture. What a sample looks at first is asked for, while something else is done; where nothing will
+ * be sampled, it is left open. */
 ACDF_INLINE void acdf_fast_set_row(const AcdfFast* fast, AcdfFastMixture* mix, int i, uint32_t row,
                                    const int draws) {
     int k;
@@ -162,7 +162,8 @@ ACDF_INLINE uint32_t acdf_fast_sample_end(const uint8_t* ends, double* u, uint32
 ACDF_INLINE double acdf_fast_sample_cell(const AcdfFastGrid* grid, double* u, AcdfRange* range) {
     uint32_t of_line, in_line;
     const uint32_t line = acdf_fast_sample_end(grid->ends, &u[1], &of_line);
-    const uint32_t cell = acdf_fast_sample_end(grid->ends + grid->count[1] + line * grid->count[0], &u[0], &in_line);
+    const uint32_t cell =
+        acdf_fast_sample_end(grid->ends + grid->count[1] + line * grid->count[0], &u[0], &in_line);
     acdf_fast_narrow(&range[0], cell, grid->shift[0]);
     acdf_fast_narrow(&range[1], line, grid->shift[1]);
     return (double)(int32_t)(of_line * in_line);

@@ -46,7 +46,7 @@ ACDF_FN double acdf_octahedral_position_on(const AcdfRange* range, double t, uin
 
 /* The direction that what is left of the random numbers picks in a cell of probability p. */
 ACDF_FN AcdfDirectionSample acdf_grid_position(const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
-                                            double p) {
+                                               double p) {
     AcdfDirectionSample out;
     double t[2], d[3];
     int i;

@@ -30,7 +30,7 @@ float acdf_sample_environment(const AcdfFile* file, double u0, double u1, float 
 /* Density of a direction; 0 where none falls, for NaN and for directions that are not of unit length. */
 float acdf_pdf_environment(const AcdfFile* file, const float direction[3]);
 int acdf_sample_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
-                                float* pdfs);
+                                  float* pdfs);
 int acdf_pdf_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs);
 /* The random numbers that sample each direction; NaN where the density is 0. */
 int acdf_invert_environment_array(const AcdfFile* file, const float* directions, size_t count, double* u);
@@ -42,9 +42,9 @@ float acdf_sample_local(const AcdfFile* file, const float normal[3], double u0, 
 float acdf_pdf_local(const AcdfFile* file, const float normal[3], const float direction[3]);
 /* Directions are 0 where their density is. A point is looked up once for all that it serves. */
 int acdf_sample_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
-                          float* directions, float* pdfs);
+                            float* directions, float* pdfs);
 int acdf_pdf_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
-                             size_t count, float* pdfs);
+                         size_t count, float* pdfs);
 /* Luminance times sr, of `count` normals: acdf_local_irradiance. */
 int acdf_irradiance_local_array(const AcdfFile* file, const float* normals, size_t count, double* irradiances);
 
@@ -54,9 +54,9 @@ int acdf_irradiance_local_array(const AcdfFile* file, const float* normals, size
 float acdf_sample_brdf(const AcdfFile* file, const float wo[3], double u0, double u1, float wi[3]);
 float acdf_pdf_brdf(const AcdfFile* file, const float wo[3], const float wi[3]);
 int acdf_sample_brdf_array(const AcdfFile* file, const float* wo, size_t each, const double* u, size_t count,
-                         float* wi, float* pdfs);
+                           float* wi, float* pdfs);
 int acdf_pdf_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
-                            float* pdfs);
+                        float* pdfs);
 /* The random numbers that sample each wi; NaN where the table's density is 0. */
 int acdf_invert_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
                            double* u);
@@ -74,9 +74,9 @@ double acdf_sample_table(const AcdfFile* file, const uint32_t* index, const doub
 double acdf_pdf_table(const AcdfFile* file, const uint32_t* index, const double* x);
 /* Points are NaN where their density is 0. */
 int acdf_sample_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* u, size_t count,
-                          double* x, double* pdfs);
-int acdf_pdf_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x,
-                             size_t count, double* pdfs);
+                            double* x, double* pdfs);
+int acdf_pdf_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x, size_t count,
+                         double* pdfs);
 /* The random numbers that sample each point; NaN where the density is 0. */
 int acdf_invert_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x, size_t count,
                             double* u);

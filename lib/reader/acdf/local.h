@@ -19,7 +19,7 @@ ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalP
                                         AcdfRange* range, double* probability) {
     if (point->visibility.count > 0)
         return acdf_visibility_sample_below(&local->visibility, &local->blend, &point->mix, &point->visibility,
-                                       acdf_blend_root(&local->blend), u, range, probability);
+                                            acdf_blend_root(&local->blend), u, range, probability);
     return acdf_blend_sample_tile(&local->blend, &point->mix, u, range, probability);
 }
 
@@ -31,7 +31,7 @@ ACDF_INLINE void acdf_local_of_mixture(const AcdfLocalPoint* point, const double
 
 /* The range of a tile to which the mixture gives `given` of all; returns that as its share. */
 ACDF_INLINE double acdf_local_sampled_tile(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile,
-                                         double given, AcdfRange* range) {
+                                           double given, AcdfRange* range) {
     acdf_tile_range(acdf_local_tile(local->tables, tile), range);
     return acdf_positive(given / acdf_mixture_sum(&point->mix));
 }
@@ -43,8 +43,8 @@ ACDF_INLINE uint32_t acdf_local_table_tile(const AcdfLocal* local, const AcdfLoc
     double from[2], given;
     uint32_t tile;
     acdf_local_of_mixture(point, u, from);
-    tile = acdf_tile_sample(acdf_local_words(local->tables), tables, &point->mix, point->codes, tables->root, from, u,
-                          &given);
+    tile = acdf_tile_sample(acdf_local_words(local->tables), tables, &point->mix, point->codes, tables->root, from,
+                            u, &given);
     *probability = acdf_local_sampled_tile(local, point, tile, given, range);
     return tile;
 }
@@ -52,7 +52,7 @@ ACDF_INLINE uint32_t acdf_local_table_tile(const AcdfLocal* local, const AcdfLoc
 /* Samples a cell of a tile of a probability; returns that of the cell. Roots alone are nearer than the tiles'
  * records, which not all samples have asked for. */
 ACDF_INLINE double acdf_local_sample_inside(const AcdfLocal* local, uint32_t tile, double probability, double* u,
-                                          AcdfRange* range) {
+                                            AcdfRange* range) {
     const uint32_t root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
     if (root == ACDF_NO_ROOT) return probability;
     return acdf_positive(probability *
@@ -80,8 +80,8 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
 
 /* The direction that what is left of the random numbers picks in a cell of probability p. */
 ACDF_INLINE AcdfDirectionSample acdf_local_direction_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                 const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
-                                                 double p) {
+                                                            const AcdfGrid* grid, const AcdfRange range[2],
+                                                            const double u[2], double p) {
     AcdfDirectionSample out;
     if (point->what != ACDF_LOCAL_BLEND || !acdf_local_direction_by_tables(local, grid, range, u, out.direction))
         return acdf_grid_position(grid, range, u, p);
@@ -120,12 +120,13 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     return acdf_local_direction_sample(local, point, &grid, range, u, p);
 }
 
-/* Samples by the row of a place or through its windows, of which there are some. The density is that of the direction
- * as it was rounded. */
+/* Samples by the row of a place or through its windows, of which there are some. The density is that of the
+ * direction as it was rounded. */
 ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_portal_sample(const AcdfLocal* local,
                                                                  const AcdfLocalPoint* point, double* u) {
     AcdfDirectionSample out;
-    if (acdf_visible_portals_choose(&point->visible_portals, u)) acdf_visible_portals_sample(&point->visible_portals, u, out.direction);
+    if (acdf_visible_portals_choose(&point->visible_portals, u))
+        acdf_visible_portals_sample(&point->visible_portals, u, out.direction);
     else out = acdf_local_row_sample(local, point, u);
     out.pdf = acdf_local_light_pdf(local, point, out.direction);
     return out;
@@ -146,7 +147,7 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_sample_at(const AcdfLocal
     } else {
         if (local->cosine_share > 0.0) u[0] = (u[0] - local->cosine_share) / (1.0 - local->cosine_share);
         out = point->visible_portals.count > 0 ? acdf_local_portal_sample(local, point, u)
-                                       : acdf_local_row_sample(local, point, u);
+                                               : acdf_local_row_sample(local, point, u);
     }
     out.pdf = acdf_local_combined_pdf(local, point, out.direction, out.pdf);
     return acdf_returned(&out);
@@ -167,8 +168,8 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_fast_sample_at(const AcdfLoca
     return acdf_local_only_fast_sample(local, point, 1, u0, u1);
 }
 
-/* Samples a direction; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and no
- * direction) where the normal is not valid or nothing shines on it. */
+/* Samples a direction; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
+ * no direction) where the normal is not valid or nothing shines on it. */
 ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const AcdfLocalPoint* point, double u0,
                                                  double u1) {
     return acdf_local_only_fast(local, point) ? acdf_local_fast_sample_at(local, point, u0, u1)

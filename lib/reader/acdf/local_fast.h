@@ -91,10 +91,11 @@ ACDF_INLINE AcdfSampledBrightTile acdf_local_fast_bright_tile(const AcdfLocalPoi
 }
 
 /* The same where they are not weighed, but their facet is known: the first one that takes the sum of
- * acdf_local_tabled_bright_tiles above x. Weight 0 where x is the whole of them, or rounded to it: *whole becomes that.
+ * acdf_local_tabled_bright_tiles above x. Weight 0 where x is the whole of them, or rounded to it: *whole becomes
+ * that.
  */
-ACDF_INLINE AcdfSampledBrightTile acdf_local_facet_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double x,
-                                                  double* whole) {
+ACDF_INLINE AcdfSampledBrightTile acdf_local_facet_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                               double x, double* whole) {
     const AcdfBrightTilePair* pairs = acdf_local_bright_tiles(local->tables);
     uint32_t left = point->facet->seen;
     AcdfSampledBrightTile out = {0, 0.0, 0.0};
@@ -142,8 +143,9 @@ ACDF_INLINE AcdfSampledBrightTile acdf_local_facet_bright_tile(const AcdfLocal* 
 
 /* The light that x of the sum of weights samples at a point, of which none is known but a facet if `weighed` is 0;
  * what is left of x as a number in [0, 1]. */
-ACDF_INLINE AcdfSampledBrightTile acdf_local_sample_fast_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                      const int weighed, double x, double* u) {
+ACDF_INLINE AcdfSampledBrightTile acdf_local_sample_fast_bright_tile(const AcdfLocal* local,
+                                                                     const AcdfLocalPoint* point, const int weighed,
+                                                                     double x, double* u) {
     AcdfSampledBrightTile out;
     double whole = 0.0;
     if (weighed) out = acdf_local_fast_bright_tile(point, x);
@@ -158,7 +160,7 @@ ACDF_INLINE AcdfSampledBrightTile acdf_local_sample_fast_bright_tile(const AcdfL
 /* Samples a cell; u and range as in acdf_tree_sample. Returns its probability. `weighed`: whether the point has the
  * weight of each light, or a facet. */
 ACDF_INLINE AcdfFastShare acdf_local_fast_sample_cell(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                               const int weighed, double* u, AcdfRange* range) {
+                                                      const int weighed, double* u, AcdfRange* range) {
     const double x = u[0] * point->sum;
     AcdfFastShare share;
     AcdfFastGrid grid;
@@ -181,7 +183,8 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_sample_cell(const AcdfLocal* local, co
 }
 
 /* The weight of the light that has a number and 1; of 0 of any. Without tables points have all. */
-ACDF_INLINE double acdf_local_fast_bright_tile_of(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t light) {
+ACDF_INLINE double acdf_local_fast_bright_tile_of(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                  uint32_t light) {
     const uint32_t k = light - (uint32_t)(light > 0);
     return local->tables ? acdf_tabled_weight(local, point, k) : point->light[k];
 }
@@ -220,15 +223,15 @@ ACDF_INLINE float acdf_local_fast_at_least(const AcdfLocal* local, const AcdfGri
 /* Of any such cell: 0 where its probability is, which that of half of all directions is. Nobody guesses it, and to
  * know it all the rest is waited for: so no branch asks. */
 ACDF_INLINE float acdf_local_fast_cell_pdf(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
-                                          const AcdfFastShare* share) {
+                                           const AcdfFastShare* share) {
     const double huge = share->of * 0x1p1000;
     return acdf_local_fast_at_least(local, grid, range, share, huge < 1.17549435e-38 ? huge : 1.17549435e-38);
 }
 
 /* The direction that what is left of the random numbers picks in a cell of such a probability. */
 ACDF_INLINE AcdfDirectionSample acdf_local_fast_direction_sample(const AcdfLocal* local, const AcdfGrid* grid,
-                                                      const AcdfRange range[2], const double u[2],
-                                                      const AcdfFastShare* share) {
+                                                                 const AcdfRange range[2], const double u[2],
+                                                                 const AcdfFastShare* share) {
     AcdfDirectionSample out;
     if (!acdf_local_direction_by_tables(local, grid, range, u, out.direction))
         out = acdf_grid_position(grid, range, u, 1.0);

@@ -1,10 +1,11 @@
-/* Shading points of files of the fast shape (acdf/fast.h). Part of acdf/local.h. Where `samples` is 0 what only samples
- * need is left open: where rows are searched, and the weight of each light. Points without are of facets. */
+/* Shading points of files of the fast shape (acdf/fast.h). Part of acdf/local.h. Where `samples` is 0 what only
+ * samples need is left open: where rows are searched, and the weight of each light. Points without are of facets.
+ */
 #ifndef ACDF_LOCAL_FAST_POINT_H
 #define ACDF_LOCAL_FAST_POINT_H
 
-#include <acdf/local_corners.h>
 #include <acdf/bright_tiles.h>
+#include <acdf/local_corners.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -53,8 +54,8 @@ ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3],
     return 1;
 }
 
-/* Weighs the bright tiles of the fast shape that the normal may see: each, the sums up to each, and all. Sums are made by
- * twos, so that few wait for each other. */
+/* Weighs the bright tiles of the fast shape that the normal may see: each, the sums up to each, and all. Sums are
+ * made by twos, so that few wait for each other. */
 ACDF_INLINE void acdf_local_fast_bright_tiles(const AcdfLocal* local, AcdfLocalPoint* out) {
     const double inverse = 1.0 / out->length;
     double end = 0.0, sum[2] = {0.0, 0.0};
@@ -79,9 +80,9 @@ ACDF_INLINE void acdf_local_tabled_bright_tiles(const AcdfLocal* local, AcdfLoca
     const __m128d inverse = _mm_set1_pd(1.0 / out->length), zero = _mm_setzero_pd();
     const AcdfFacet* facet = out->facet;
     const uint32_t others = facet ? facet->others : 0xFFFFFFFFu;
-    uint32_t left = facet                    ? facet->seen
+    uint32_t left = facet                          ? facet->seen
                     : local->bright_tile_count > 0 ? 0xFFFFFFFFu >> (31 - (local->bright_tile_count - 1) / 2)
-                                             : 0;
+                                                   : 0;
     __m128d end = zero, sum = zero;
     out->lit = 0;
     for (; left; left &= left - 1) {
@@ -96,7 +97,8 @@ ACDF_INLINE void acdf_local_tabled_bright_tiles(const AcdfLocal* local, AcdfLoca
         out->pair[out->lit / 2] = (uint8_t)k;
         out->lit += 2;
     }
-    out->bright_tiles = (facet ? acdf_facet_whole(out) : 0.0) + _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
+    out->bright_tiles =
+        (facet ? acdf_facet_whole(out) : 0.0) + _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
 #else
     acdf_local_fast_bright_tiles(local, out);
     if (out->facet) out->bright_tiles = acdf_facet_bright_tiles(local, out);

@@ -72,8 +72,8 @@ ACDF_INLINE AcdfLocalSpot acdf_local_spot(const AcdfLocal* local, const AcdfLoca
     return out;
 }
 
-/* The cell of a square in the mixture of bright tiles and rows, which becomes `range`, as acdf_tree_find does. Returns
- * its probability, 0 where no sample can fall. */
+/* The cell of a square in the mixture of bright tiles and rows, which becomes `range`, as acdf_tree_find does.
+ * Returns its probability, 0 where no sample can fall. */
 ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfLocalSpot* spot,
                                      AcdfRange* range) {
     double probability;
@@ -82,7 +82,7 @@ ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoin
         probability = acdf_local_found_tile(local, point, &point->mix, tile, 0, range);
     else if (point->visibility.count > 0)
         tile = acdf_visibility_find_below(&local->visibility, &local->blend, &point->mix, &point->visibility,
-                                     acdf_blend_root(&local->blend), spot->square, range, &probability);
+                                          acdf_blend_root(&local->blend), spot->square, range, &probability);
     else tile = acdf_blend_find_tile(&local->blend, &point->mix, spot->square, range, 0, &probability);
     probability = acdf_local_tile_probability(local, point, tile, probability);
     return acdf_local_find_inside(local, tile, probability, spot->square, range);
@@ -187,12 +187,13 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
 /* The part of the density that follows the light: that of rows, and of windows where a position sees any. */
 ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     const float row = acdf_local_row_pdf(local, point, direction);
-    return point->visible_portals.count > 0 ? acdf_visible_portals_pdf(&point->visible_portals, direction, row) : row;
+    return point->visible_portals.count > 0 ? acdf_visible_portals_pdf(&point->visible_portals, direction, row)
+                                            : row;
 }
 
 /* Both parts together: `light` is that of the light, the other one is that of the cosine to the normal. */
 ACDF_FN float acdf_local_combined_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
-                                 float light) {
+                                      float light) {
     const double x = point->surface[0], y = point->surface[1], z = point->surface[2];
     const double share = local->cosine_share;
     double dx, dy, dz, size, cosine, pdf;

@@ -56,8 +56,8 @@ ACDF_INLINE void acdf_local_nothing(const float normal[3], AcdfLocalPoint* out) 
     }
 }
 
-/* Finds what serves a normal, without the weights of bright tiles and the mixture. Returns 0 where bright tiles and mixture do
- * not. */
+/* Finds what serves a normal, without the weights of bright tiles and the mixture. Returns 0 where bright tiles and
+ * mixture do not. */
 ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     AcdfNormalBins bins;
     int i;
@@ -119,7 +119,8 @@ ACDF_FN void acdf_local_at_cells(const AcdfLocal* local, const float position[3]
         return;
     }
     if (local->blend.tiles)
-        acdf_visibility_at(&local->visibility, local->blend.tiles->tile_count, position, out->surface, &out->visibility);
+        acdf_visibility_at(&local->visibility, local->blend.tiles->tile_count, position, out->surface,
+                           &out->visibility);
     if (!acdf_local_begin(local, normal, out)) {
         out->visibility.count = 0;
         return;
@@ -135,13 +136,14 @@ ACDF_FN void acdf_local_at_cells(const AcdfLocal* local, const float position[3]
     if (!(out->sum > 0.0)) out->visibility.count = 0;
 }
 
-/* Finds what serves a normal at a position of the scene. Outside of all cells, and where there are no visibility cells,
- * that is what serves the normal. */
+/* Finds what serves a normal at a position of the scene. Outside of all cells, and where there are no visibility
+ * cells, that is what serves the normal. */
 ACDF_FN void acdf_local_at_position(const AcdfLocal* local, const float position[3], const float normal[3],
-                                 AcdfLocalPoint* out) {
+                                    AcdfLocalPoint* out) {
     acdf_local_at_cells(local, position, normal, out);
     if (local->portals.header && out->visibility.count > 0)
-        acdf_visible_portals_at(&local->portals, &local->visibility, &out->visibility, position, out->surface, &out->visible_portals);
+        acdf_visible_portals_at(&local->portals, &local->visibility, &out->visibility, position, out->surface,
+                                &out->visible_portals);
 }
 
 /* Whether u0 in [0, 1] samples from the mixture, not a light. */
@@ -149,10 +151,10 @@ ACDF_FN int acdf_local_samples_mixture(const AcdfLocalPoint* point, double u0) {
     return !(u0 * point->sum < point->bright_tiles || point->mix.count == 0);
 }
 
-/* The light that u[0] in [0, 1] samples, null where it samples from the mixture. *weight becomes its own. What is left
- * of u[0] takes its mixture. */
-ACDF_FN const AcdfBrightTile* acdf_local_sample_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
-                                               double* weight) {
+/* The light that u[0] in [0, 1] samples, null where it samples from the mixture. *weight becomes its own. What is
+ * left of u[0] takes its mixture. */
+ACDF_FN const AcdfBrightTile* acdf_local_sample_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                            double* u, double* weight) {
     const AcdfBrightTile* light = 0;
     double x = u[0] * point->sum;
     uint32_t k;

@@ -32,10 +32,11 @@ typedef struct AcdfBrightTilePair {
     double quarter[2]; /* of the share to the radius */
 } AcdfBrightTilePair;
 
-/* A triangle of the octahedron of normals (acdf/normals.h): bright tiles as its normals see them, and its corners in the
- * order of acdf_octahedral_bins. */
+/* A triangle of the octahedron of normals (acdf/normals.h): bright tiles as its normals see them, and its corners
+ * in the order of acdf_octahedral_bins. */
 typedef struct AcdfFacet {
-    double whole[3];  /* sum of share times direction of the bright tiles that are above the horizons of all, by pairs */
+    double whole[3];  /* sum of share times direction of the bright tiles that are above the horizons of all, by
+                         pairs */
     uint32_t others;  /* bit k: of pair k of bright tiles one is neither above the horizons of all nor below */
     uint32_t seen;    /* bit k: of pair k some normal may see one */
     double length[3]; /* of corners from the middle, in steps of an edge */
@@ -56,7 +57,7 @@ typedef struct AcdfLocalTables {
     uint32_t heights;       /* f64, one more than there are rows: z between them; 0: not on a lat-long grid */
     uint32_t facets;       /* AcdfFacet, n^2 of each octant, of acdf_local_facet; 0: the octahedron is too large, or
                               there is none */
-    uint32_t bright_tiles;       /* AcdfBrightTilePair, one two bright tiles */
+    uint32_t bright_tiles; /* AcdfBrightTilePair, one two bright tiles */
     uint32_t middles;      /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and of the fast shape its
                               solid angle, else 0 */
     uint32_t hearts;       /* u16 a split of each row, numbered and counted as in `tiles`: the tile that is reached

@@ -1,5 +1,5 @@
-/* Pieces of the sphere, in which directions are sampled and found in floats. One text for processors and for shaders
- * of every language (acdf/dialect.h).
+/* Pieces of the sphere, in which directions are sampled and found in floats. One text for processors and for
+ * shaders of every language (acdf/dialect.h).
  *
  * The sphere is cut into eight pieces along z = 0 and the meridians half-way between the x and the y axes. In each,
  * azimuth is measured from the x or y axis in its middle: sine and cosine need no reduction, and minor over major
@@ -106,7 +106,8 @@ ACDF_FN3(ACDF_F32, acdf_cap_of, ACDF_F32, z, ACDF_F32, sin2, ACDF_F32, length2) 
 }
 
 /* Of a direction of nearly unit length that is not a pole; sin2 is x x + y y, length2 that and z z. */
-ACDF_FN5(AcdfDirectionKeys, acdf_direction_keys, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z, ACDF_F32, sin2, ACDF_F32, length2) {
+ACDF_FN5(AcdfDirectionKeys, acdf_direction_keys, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z, ACDF_F32, sin2, ACDF_F32,
+         length2) {
     ACDF_LET(ACDF_U32, steep) = ACDF_SELECT(ACDF_ABS(y) > ACDF_ABS(x), 1u, 0u);
     ACDF_LET(ACDF_F32, minor) = ACDF_SELECT(steep != 0u, -x, y);
     ACDF_LET(ACDF_F32, major) = ACDF_SELECT(steep != 0u, y, x);

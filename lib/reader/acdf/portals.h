@@ -1,20 +1,20 @@
-/* Portals: rectangles that light comes through, as a mixture sees them. One freestanding header over acdf/visibility.h,
- * valid C99, C++17 and CUDA/HIP/SYCL, with the same contract (SPEC.md §5.10 and §6.12).
+/* Portals: rectangles that light comes through, as a mixture sees them. One freestanding header over
+ * acdf/visibility.h, valid C99, C++17 and CUDA/HIP/SYCL, with the same contract (SPEC.md §5.10 and §6.12).
  *
  * All portals that face the same way share a map of the light of their hemisphere. Its axes are tangents along the
  * sides of the portals, bent into a square, so that a portal is an upright rectangle of the map from wherever it is
- * seen: a *visible_portal* (Bitterli, Novak, Jarosz, "Portal-Masked Environment Map Sampling", EGSR 2015). A portal is
- * divided into pieces along its sides. Each is sampled as the light in it, times a cosine to the normal, times how
- * much of it the cells of the mixture see; then, in a piece, the map is followed. A share that the cells tell is
- * sampled by the row of the mixture: it covers all other light, and a scene that has changed.
+ * seen: a *visible_portal* (Bitterli, Novak, Jarosz, "Portal-Masked Environment Map Sampling", EGSR 2015). A portal
+ * is divided into pieces along its sides. Each is sampled as the light in it, times a cosine to the normal, times
+ * how much of it the cells of the mixture see; then, in a piece, the map is followed. A share that the cells tell
+ * is sampled by the row of the mixture: it covers all other light, and a scene that has changed.
  *
  * The map is bent by t / (1 + |t|), not by the arc tangent of that paper: cells are about as even, and no machine
  * rounds it in another way. */
 #ifndef ACDF_PORTALS_H
 #define ACDF_PORTALS_H
 
-#include <acdf/visibility.h>
 #include <acdf/random.h>
+#include <acdf/visibility.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -28,7 +28,8 @@ typedef struct AcdfPortalTable {
     const uint8_t* rows;  /* one a row of visibility cells */
 } AcdfPortalTable;
 
-/* A portal that a mixture sees; none of its tangents is larger than this, and none of its sides shorter in a map. */
+/* A portal that a mixture sees; none of its tangents is larger than this, and none of its sides shorter in a map.
+ */
 #define ACDF_STEEPEST 0x1p12
 #define ACDF_THINNEST 0x1p-12
 
@@ -99,7 +100,7 @@ ACDF_FN const uint8_t* acdf_portal_row(const AcdfPortalTable* table, const AcdfV
 
 /* Where a portal is seen from a point; 0 where it is not, or too thin. */
 ACDF_FN int acdf_portal_bounds(const AcdfPortalTable* table, const AcdfPortal* portal, const double from[3],
-                              AcdfVisiblePortal* out) {
+                               AcdfVisiblePortal* out) {
     const AcdfPortalMap* map = &table->maps[portal->map];
     const double size = (double)table->header->size;
     double corner[3], distance;
@@ -122,12 +123,13 @@ ACDF_FN int acdf_portal_bounds(const AcdfPortalTable* table, const AcdfPortal* p
 /* The side of a piece: the tangent at `i` of `pieces` steps. */
 ACDF_FN double acdf_piece_side(const AcdfVisiblePortal* visible_portal, int axis, uint32_t i, uint32_t pieces) {
     if (i == pieces) return visible_portal->high[axis];
-    return visible_portal->low[axis] + (visible_portal->high[axis] - visible_portal->low[axis]) * ((double)i / (double)pieces);
+    return visible_portal->low[axis] +
+           (visible_portal->high[axis] - visible_portal->low[axis]) * ((double)i / (double)pieces);
 }
 
 /* What the cells of a mixture see of each piece of a portal, whose bytes begin at `first` of each row. */
 ACDF_FN void acdf_portal_visibility(const AcdfVisibilityMixture* mixture, const uint8_t** rows, uint32_t first,
-                                 uint32_t count, double* out) {
+                                    uint32_t count, double* out) {
     uint32_t c;
     int i;
     for (c = 0; c < count; ++c) out[c] = 0.0;
@@ -138,9 +140,10 @@ ACDF_FN void acdf_portal_visibility(const AcdfVisibilityMixture* mixture, const 
 /* The light between interpolated sums is less than this part of the largest of them off: no more may be none. */
 #define ACDF_LEAST_LIGHT 0x1p-48
 
-/* Weighs the pieces of a visible_portal: its light, times the mean of the cosines at the corners, times what is visible. */
+/* Weighs the pieces of a visible_portal: its light, times the mean of the cosines at the corners, times what is
+ * visible. */
 ACDF_FN void acdf_visible_portal_weigh(const AcdfPortalTable* table, const double normal[3], const double* visible,
-                               AcdfVisiblePortal* visible_portal) {
+                                       AcdfVisiblePortal* visible_portal) {
     const AcdfPortalMap* map = &table->maps[visible_portal->map];
     const uint32_t* sums = acdf_portal_map_sums(table, visible_portal->map);
     const uint32_t size = table->header->size, pieces = table->header->pieces;
@@ -177,8 +180,8 @@ ACDF_FN void acdf_visible_portal_weigh(const AcdfPortalTable* table, const doubl
 
 /* The visible_portals of a mixture, which lies in cells, and a normal. */
 ACDF_FN void acdf_visible_portals_at(const AcdfPortalTable* table, const AcdfVisibilityTable* visibility,
-                             const AcdfVisibilityMixture* mixture, const float position[3], const float normal[3],
-                             AcdfVisiblePortals* out) {
+                                     const AcdfVisibilityMixture* mixture, const float position[3],
+                                     const float normal[3], AcdfVisiblePortals* out) {
     const uint32_t pieces = table->header->pieces * table->header->pieces;
     const uint8_t* rows[ACDF_MAX_CELLS_MIXED];
     double x[6], visible[ACDF_MAX_PORTAL_PIECES * ACDF_MAX_PORTAL_PIECES];
@@ -205,14 +208,16 @@ ACDF_FN void acdf_visible_portals_at(const AcdfPortalTable* table, const AcdfVis
 }
 
 /* Of the densities of visible_portals and row together. */
-ACDF_FN float acdf_visible_portals_mixed(const AcdfVisiblePortals* visible_portals, double of_portals, float of_row) {
+ACDF_FN float acdf_visible_portals_mixed(const AcdfVisiblePortals* visible_portals, double of_portals,
+                                         float of_row) {
     const double pdf = visible_portals->of_row * (double)of_row + (1.0 - visible_portals->of_row) * of_portals;
     if (!(pdf > 0.0)) return 0.0f;
     return (float)acdf_clamp(pdf, 1.17549435e-38, 3.402823466e38);
 }
 
 /* The weight per steradian of a unit direction in a visible_portal. */
-ACDF_FN double acdf_visible_portal_pdf(const AcdfPortalTable* table, const AcdfVisiblePortal* visible_portal, const double d[3]) {
+ACDF_FN double acdf_visible_portal_pdf(const AcdfPortalTable* table, const AcdfVisiblePortal* visible_portal,
+                                       const double d[3]) {
     const AcdfPortalMap* map = &table->maps[visible_portal->map];
     const uint32_t size = table->header->size, pieces = table->header->pieces;
     const double z = acdf_dot3(map->axis[2], d);
@@ -225,8 +230,9 @@ ACDF_FN double acdf_visible_portal_pdf(const AcdfPortalTable* table, const AcdfV
         along[k] = acdf_dot3(map->axis[k], d);
         t = along[k] / z;
         if (!(t >= visible_portal->low[k] && t <= visible_portal->high[k])) return 0.0;
-        piece[k] =
-            acdf_map_cell((t - visible_portal->low[k]) / (visible_portal->high[k] - visible_portal->low[k]) * (double)pieces, pieces);
+        piece[k] = acdf_map_cell((t - visible_portal->low[k]) / (visible_portal->high[k] - visible_portal->low[k]) *
+                                     (double)pieces,
+                                 pieces);
         cell[k] = acdf_map_cell(acdf_bend(t, (double)size), size);
     }
     slope = (z + fabs(along[0])) * (z + fabs(along[1]));
@@ -236,7 +242,8 @@ ACDF_FN double acdf_visible_portal_pdf(const AcdfPortalTable* table, const AcdfV
 }
 
 /* Density per steradian of row and visible_portals together; `row`: that of the row. */
-ACDF_OUTLINE_ON_CPU float acdf_visible_portals_pdf(const AcdfVisiblePortals* visible_portals, const float direction[3], float row) {
+ACDF_OUTLINE_ON_CPU float acdf_visible_portals_pdf(const AcdfVisiblePortals* visible_portals,
+                                                   const float direction[3], float row) {
     double d[3], size, sum = 0.0;
     float given[3];
     int i;
@@ -244,7 +251,8 @@ ACDF_OUTLINE_ON_CPU float acdf_visible_portals_pdf(const AcdfVisiblePortals* vis
     for (i = 0; i < 3; ++i) d[i] = given[i];
     size = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     if (!(size > 0.9995 && size < 1.0005)) return 0.0f;
-    for (i = 0; i < visible_portals->count; ++i) sum += acdf_visible_portal_pdf(&visible_portals->table, &visible_portals->visible_portal[i], d);
+    for (i = 0; i < visible_portals->count; ++i)
+        sum += acdf_visible_portal_pdf(&visible_portals->table, &visible_portals->visible_portal[i], d);
     return acdf_visible_portals_mixed(visible_portals, sum / visible_portals->weight, row);
 }
 
@@ -274,8 +282,8 @@ ACDF_FN uint32_t acdf_sample_part(const double* weight, uint32_t count, double* 
     return last;
 }
 
-/* Where, from `low` to `high` on axis 0 of a map, u of the light between two visibility on axis 1 lies before; on axis
- * 1 the same of the cells of one column. *cell becomes the one it lies in or ends at, which has light. */
+/* Where, from `low` to `high` on axis 0 of a map, u of the light between two visibility on axis 1 lies before; on
+ * axis 1 the same of the cells of one column. *cell becomes the one it lies in or ends at, which has light. */
 ACDF_FN double acdf_map_column(const uint32_t* sums, uint32_t size, const double low[2], const double high[2],
                                double u, uint32_t* cell) {
     const double from = acdf_map_sum(sums, size, low[0], high[1]) - acdf_map_sum(sums, size, low[0], low[1]);
@@ -351,8 +359,8 @@ ACDF_FN double acdf_inside_piece(double t, double low, double high) {
 }
 
 /* Samples a direction in a piece of a visible_portal: a column of the map, then a row. */
-ACDF_FN void acdf_piece_sample(const AcdfPortalTable* table, const AcdfVisiblePortal* visible_portal, const uint32_t piece[2],
-                               const double u[2], float direction[3]) {
+ACDF_FN void acdf_piece_sample(const AcdfPortalTable* table, const AcdfVisiblePortal* visible_portal,
+                               const uint32_t piece[2], const double u[2], float direction[3]) {
     const AcdfPortalMap* map = &table->maps[visible_portal->map];
     const uint32_t* sums = acdf_portal_map_sums(table, visible_portal->map);
     const uint32_t size = table->header->size, pieces = table->header->pieces;
@@ -384,7 +392,8 @@ ACDF_FN void acdf_visible_portals_sample(const AcdfVisiblePortals* visible_porta
     double weight[ACDF_MAX_PORTALS];
     uint32_t piece[2], i, j;
     for (i = 0; i < (uint32_t)visible_portals->count; ++i) weight[i] = visible_portals->visible_portal[i].weight;
-    visible_portal = &visible_portals->visible_portal[acdf_sample_part(weight, (uint32_t)visible_portals->count, &u[0])];
+    visible_portal =
+        &visible_portals->visible_portal[acdf_sample_part(weight, (uint32_t)visible_portals->count, &u[0])];
     for (i = 0; i < pieces; ++i)
         for (weight[i] = 0.0, j = 0; j < pieces; ++j) weight[i] += (double)visible_portal->piece[i][j];
     piece[0] = acdf_sample_part(weight, pieces, &u[0]);

@@ -71,8 +71,8 @@ struct LoadOptions {
     LoadOptions(const Limits& limits) noexcept : limits(limits) {}
 
     Limits limits;
-    /// Whether runtime tables are made: samples and densities take a fraction of the time. Without them nothing more
-    /// is allocated, and the file's own trees are walked.
+    /// Whether runtime tables are made: samples and densities take a fraction of the time. Without them nothing
+    /// more is allocated, and the file's own trees are walked.
     bool tables = true;
     /// Where the memory comes from that an open file keeps; by default the C library. It must stay usable until the
     /// file is gone. What is needed for a moment, while bytes are checked, is the C library's.

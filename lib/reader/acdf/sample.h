@@ -13,9 +13,9 @@
 #ifndef ACDF_SAMPLE_H
 #define ACDF_SAMPLE_H
 
-#include <acdf/partner.h>
 #include <acdf/grid.h>
 #include <acdf/halvings.h>
+#include <acdf/partner.h>
 #include <acdf/random.h>
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include <acdf/tree.h>
@@ -79,8 +79,9 @@ ACDF_INLINE AcdfDirectionSample acdf_environment_halved_sample(const AcdfEnviron
     u[1] = acdf_span_fraction(&steps[1], given[1]);
     p = acdf_span_share(&steps[0]) * acdf_span_share(&steps[1]);
     if (env->parameterization != ACDF_PARAM_OCTAHEDRAL)
-        return acdf_sphere_position_between(env->columns, range, u, p, acdf_halved_height(env->halved, range[1].low),
-                                         acdf_halved_height(env->halved, range[1].high));
+        return acdf_sphere_position_between(env->columns, range, u, p,
+                                            acdf_halved_height(env->halved, range[1].low),
+                                            acdf_halved_height(env->halved, range[1].high));
     {
         const AcdfGrid grid = acdf_environment_grid(env);
         return acdf_grid_position(&grid, range, u, p);

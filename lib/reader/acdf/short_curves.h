@@ -64,7 +64,7 @@ ACDF_INLINE __m128i acdf_short_curve_values(const AcdfShortCurve* curve) {
 
 /* The segment that a number below `maximum` samples; *low and *width as acdf_short_curve_width tells them. */
 ACDF_INLINE uint32_t acdf_short_curve_sampled(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
-                                            uint32_t* width) {
+                                              uint32_t* width) {
     const __m128i values = acdf_short_curve_values(curve);
     const uint32_t segment = acdf_first_above(values, number);
     uint16_t bound[9];
@@ -180,7 +180,7 @@ ACDF_INLINE uint32_t acdf_short_curve_width(const AcdfShortCurve* curve, uint32_
 
 /* The segment that a number below `maximum` samples; *low and *width as acdf_short_curve_width tells them. */
 ACDF_INLINE uint32_t acdf_short_curve_sampled(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
-                                            uint32_t* width) {
+                                              uint32_t* width) {
     const uint32_t segment = acdf_first_above(curve->cumulative, number, curve->inner);
     *width = acdf_short_curve_width(curve, segment, low);
     return segment;
@@ -199,8 +199,8 @@ ACDF_INLINE uint32_t acdf_short_curve_narrow(const AcdfShortCurve* curve, uint32
 
 /* Samples one segment, of whatever curve: as acdf_tree_sample does. Returns the distance to its child, 0 where it
  * ends. */
-ACDF_INLINE uint32_t acdf_short_curve_sample(const uint8_t* tree, uint32_t units, uint32_t at, double* u, AcdfRange* range,
-                                     double* probability) {
+ACDF_INLINE uint32_t acdf_short_curve_sample(const uint8_t* tree, uint32_t units, uint32_t at, double* u,
+                                             AcdfRange* range, double* probability) {
     AcdfShortCurve curve;
     uint32_t segment, low, width;
     double scaled, maximum;
@@ -215,8 +215,8 @@ ACDF_INLINE uint32_t acdf_short_curve_sample(const uint8_t* tree, uint32_t units
 }
 
 /* acdf_tree_sample_on of a tree of `units`; 0: how many is not known. */
-ACDF_INLINE double acdf_short_tree_sample_on(const uint8_t* tree, uint32_t units, uint32_t at, double* u, AcdfRange* range,
-                                     double probability) {
+ACDF_INLINE double acdf_short_tree_sample_on(const uint8_t* tree, uint32_t units, uint32_t at, double* u,
+                                             AcdfRange* range, double probability) {
     uint32_t link;
     do {
         link = acdf_short_curve_sample(tree, units, at, u, range, &probability);
@@ -226,7 +226,8 @@ ACDF_INLINE double acdf_short_tree_sample_on(const uint8_t* tree, uint32_t units
 }
 
 /* acdf_tree_sample of such a tree. */
-ACDF_INLINE double acdf_short_tree_sample(const uint8_t* tree, uint32_t units, uint32_t root, double* u, AcdfRange* range) {
+ACDF_INLINE double acdf_short_tree_sample(const uint8_t* tree, uint32_t units, uint32_t root, double* u,
+                                          AcdfRange* range) {
     return acdf_short_tree_sample_on(tree, units, root, u, range, 1.0);
 }
 

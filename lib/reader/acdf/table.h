@@ -108,8 +108,7 @@ ACDF_FN double acdf_table_cell_pdf(const AcdfTable* table, double p, const AcdfT
         const AcdfAxis* a = &table->axes[axis];
         const AcdfRange* range = &place->range[axis];
         p *= (double)a->resolution / (fabs(a->high - a->low) * (double)(range->high - range->low));
-        if (range->tilt != 0.0)
-            p *= acdf_tilt_pdf(range->tilt, acdf_table_fraction(range, place->position[axis]));
+        if (range->tilt != 0.0) p *= acdf_tilt_pdf(range->tilt, acdf_table_fraction(range, place->position[axis]));
     }
     return acdf_clamp(p, ACDF_DOUBLE_MIN, ACDF_DOUBLE_MAX);
 }

@@ -32,15 +32,15 @@ typedef struct AcdfEntryCurve {
 
 /* An axis of the grids of a bin. */
 typedef struct AcdfEntryAxis {
-    double border;                /* acdf_table_border */
+    double border;                   /* acdf_table_border */
     uint32_t shift, position_stride; /* bits of positions that are finer than entries; entries to the next one */
-    uint32_t number_steps;        /* entries along random numbers: a power of two */
+    uint32_t number_steps;           /* entries along random numbers: a power of two */
     uint32_t number_stride;
 } AcdfEntryAxis;
 
 /* Offsets in words from the start of AcdfEntries. */
 typedef struct AcdfEntryBin {
-    uint32_t positions, numbers;          /* u32 each; 0: the tree is walked from its root */
+    uint32_t positions, numbers;       /* u32 each; 0: the tree is walked from its root */
     AcdfEntryAxis axes[ACDF_MAX_AXES]; /* of the sampled ones, from 0 */
 } AcdfEntryBin;
 
@@ -80,7 +80,7 @@ ACDF_INLINE void acdf_entry_ranges(const AcdfEntryCurve* curve, uint32_t count, 
 
 /* The entry of a square of the grid of positions, of `count` sampled axes. */
 ACDF_INLINE uint32_t acdf_entry_of_position(const AcdfEntries* entries, const AcdfEntryBin* bin, uint32_t count,
-                                         const uint32_t* square) {
+                                            const uint32_t* square) {
     size_t at = bin->positions;
     uint32_t axis;
     for (axis = 0; axis < count; ++axis)

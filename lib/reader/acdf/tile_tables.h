@@ -262,8 +262,8 @@ ACDF_INLINE uint32_t acdf_tile_walk_end(const AcdfTileWalk* walk, const AcdfMixt
 
 /* Samples a tile below split `node`: u and *given as acdf_tile_walk_end sets them. */
 ACDF_INLINE uint32_t acdf_tile_sample_rows(const uint32_t* words, const AcdfTileTables* tables,
-                                         const AcdfMixture* mix, const uint8_t* const* row, const int rows,
-                                         uint32_t node, const double* from, double* u, double* given) {
+                                           const AcdfMixture* mix, const uint8_t* const* row, const int rows,
+                                           uint32_t node, const double* from, double* u, double* given) {
     AcdfTileWalk walk;
     acdf_tile_walk_begin(words, tables, mix, row, rows, node, from, &walk);
     do {
@@ -283,8 +283,8 @@ ACDF_INLINE double acdf_tile_share(const uint32_t* words, const AcdfTileTables* 
     }
 }
 ACDF_INLINE uint32_t acdf_tile_sample(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
-                                    const uint8_t* const* row, uint32_t node, const double* from, double* u,
-                                    double* given) {
+                                      const uint8_t* const* row, uint32_t node, const double* from, double* u,
+                                      double* given) {
     int i;
     if (node & ACDF_TILE_FLAG) {
         *given = acdf_mixture_sum(mix);

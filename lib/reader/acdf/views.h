@@ -43,8 +43,8 @@ public:
     }
     /// The same for a point of the scene that the file was made for, `position` in the scene's own coordinates:
     /// only light that reaches it is drawn, but for a small share. Outside of the scene's bounds, and of files that
-    /// do not store visibility cells, that of the normal alone. Where the scene is another one than it was, sampling
-    /// stays unbiased, and is noisier.
+    /// do not store visibility cells, that of the normal alone. Where the scene is another one than it was,
+    /// sampling stays unbiased, and is noisier.
     ACDF_METHOD AcdfLocalPoint at(const float position[3], const float normal[3]) const noexcept {
         AcdfLocalPoint point;
         acdf_local_at_position(&data_, position, normal, &point);

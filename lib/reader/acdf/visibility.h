@@ -1,11 +1,11 @@
 /* Only the light that a mixture can see: one freestanding header over acdf/blend.h, valid C99, C++17 and
  * CUDA/HIP/SYCL, with the same contract (SPEC.md §5.9).
  *
- * Positions and normals lie in the cells of a k-d tree. A cell has a row of bytes: how much of the bright tiles, of the
- * mixture as a whole and, at each split of tiles that counts in its region (a *column*), of its two parts reaches
- * it. Those *visibilities* multiply what rows of normals give to the two parts; the products are made to add up to
- * 1 again at each split, so that the density is exact whatever the bytes are. Near the border of two cells their
- * visibilities are mixed, linearly, so that nothing jumps where at most four cells meet. */
+ * Positions and normals lie in the cells of a k-d tree. A cell has a row of bytes: how much of the bright tiles, of
+ * the mixture as a whole and, at each split of tiles that counts in its region (a *column*), of its two parts
+ * reaches it. Those *visibilities* multiply what rows of normals give to the two parts; the products are made to
+ * add up to 1 again at each split, so that the density is exact whatever the bytes are. Near the border of two
+ * cells their visibilities are mixed, linearly, so that nothing jumps where at most four cells meet. */
 #ifndef ACDF_VISIBILITY_H
 #define ACDF_VISIBILITY_H
 
@@ -18,10 +18,10 @@ extern "C" {
 enum { ACDF_MAX_CELLS_MIXED = 4 };
 
 typedef struct AcdfVisibilityTable {
-    const AcdfVisibility* header;     /* chunk PLAC; null where there is none */
+    const AcdfVisibility* header;      /* chunk PLAC; null where there is none */
     const AcdfVisibilitySplit* splits; /* behind it */
-    const uint16_t* columns;      /* sets of one a split of tiles */
-    const uint16_t* set_of_row;   /* null where there is but one set */
+    const uint16_t* columns;           /* sets of one a split of tiles */
+    const uint16_t* set_of_row;        /* null where there is but one set */
     const uint8_t* rows;
     uint32_t bright_tile_count;
 } AcdfVisibilityTable;
@@ -48,7 +48,8 @@ ACDF_FN double acdf_visibility_of_code(uint8_t code) {
 ACDF_FN double acdf_mixture_visibility(const AcdfVisibilityMixture* mixture, uint32_t index) {
     double sum = 0.0;
     int i;
-    for (i = 0; i < mixture->count; ++i) sum += mixture->weight[i] * acdf_visibility_of_code(mixture->row[i][index]);
+    for (i = 0; i < mixture->count; ++i)
+        sum += mixture->weight[i] * acdf_visibility_of_code(mixture->row[i][index]);
     return sum;
 }
 
@@ -65,8 +66,8 @@ ACDF_FN void acdf_visibility_of_tiles(const AcdfVisibilityMixture* mixture, uint
 }
 
 /* A position of the scene and a normal among the cells; 0 where it lies outside. */
-ACDF_FN int acdf_visibility_coordinates(const AcdfVisibilityTable* table, const float position[3], const float normal[3],
-                                   double out[6]) {
+ACDF_FN int acdf_visibility_coordinates(const AcdfVisibilityTable* table, const float position[3],
+                                        const float normal[3], double out[6]) {
     const AcdfVisibility* header = table->header;
     const double x = (double)normal[0], y = (double)normal[1], z = (double)normal[2];
     const double length = sqrt(x * x + y * y + z * z);
@@ -85,7 +86,7 @@ ACDF_FN int acdf_visibility_coordinates(const AcdfVisibilityTable* table, const 
  * Where it is within reach of so many borders that more than four cells would be mixed, the lighter side of a
  * border is left out. */
 ACDF_FN void acdf_visibility_at(const AcdfVisibilityTable* table, uint32_t tile_count, const float position[3],
-                           const float normal[3], AcdfVisibilityMixture* out) {
+                                const float normal[3], AcdfVisibilityMixture* out) {
     uint32_t node[ACDF_MAX_CELLS_MIXED];
     size_t width;
     double x[6];
@@ -102,7 +103,8 @@ ACDF_FN void acdf_visibility_at(const AcdfVisibilityTable* table, uint32_t tile_
             const AcdfVisibilitySplit* split = &table->splits[now];
             const double above = x[split->lower & 7u] - (double)split->position, blend = (double)split->blend;
             const uint32_t lower = split->lower >> 3, upper = split->upper;
-            if (!(upper & ACDF_VISIBILITY_ROW)) ACDF_PREFETCH(&table->splits[upper]); /* the lower one is the next */
+            if (!(upper & ACDF_VISIBILITY_ROW))
+                ACDF_PREFETCH(&table->splits[upper]); /* the lower one is the next */
             if (fabs(above) < blend && out->count < ACDF_MAX_CELLS_MIXED) {
                 const double share = out->weight[i] * ((above + blend) / (2.0 * blend));
                 node[out->count] = upper;
@@ -128,14 +130,15 @@ ACDF_FN void acdf_visibility_at(const AcdfVisibilityTable* table, uint32_t tile_
 
 /* The odds of a split, out of 65535; below 0 where none of the cells has a column for it. */
 ACDF_INLINE double acdf_visibility_odds(const AcdfVisibilityTable* table, const uint16_t* codebook,
-                                   const AcdfVisibilityMixture* mixture, const int visibility, uint32_t node) {
+                                        const AcdfVisibilityMixture* mixture, const int visibility, uint32_t node) {
     const uint32_t first = 1 + table->bright_tile_count;
     double odds = 0.0;
     int i, known = 0;
     if (mixture->alike) {
         const uint32_t column = mixture->columns[0][node];
         if (column == ACDF_NO_COLUMN) return -1.0;
-        for (i = 0; i < visibility; ++i) odds += mixture->weight[i] * (double)codebook[mixture->row[i][first + column]];
+        for (i = 0; i < visibility; ++i)
+            odds += mixture->weight[i] * (double)codebook[mixture->row[i][first + column]];
         return odds;
     }
     for (i = 0; i < visibility; ++i) {
@@ -149,9 +152,10 @@ ACDF_INLINE double acdf_visibility_odds(const AcdfVisibilityTable* table, const 
 
 /* What of the weights of rows falls into the two parts of a split, times their visibility; `lower` is what of each
  * row falls into the lower one, without it. */
-ACDF_INLINE void acdf_visibility_split(const AcdfVisibilityTable* table, const AcdfBlend* blend, const AcdfMixture* mix,
-                                  const int rows, const AcdfVisibilityMixture* mixture, const int visibility, uint32_t node,
-                                  const double* weight, double* lower, double part[2]) {
+ACDF_INLINE void acdf_visibility_split(const AcdfVisibilityTable* table, const AcdfBlend* blend,
+                                       const AcdfMixture* mix, const int rows, const AcdfVisibilityMixture* mixture,
+                                       const int visibility, uint32_t node, const double* weight, double* lower,
+                                       double part[2]) {
     const uint16_t* codebook = blend->tiles->codebook;
     const double odds = acdf_visibility_odds(table, codebook, mixture, visibility, node);
     int i;
@@ -167,9 +171,9 @@ ACDF_INLINE void acdf_visibility_split(const AcdfVisibilityTable* table, const A
 }
 
 ACDF_INLINE uint32_t acdf_visibility_sample_rows(const AcdfVisibilityTable* table, const AcdfBlend* blend,
-                                            const AcdfMixture* mix, const int rows, const AcdfVisibilityMixture* mixture,
-                                            const int visibility, uint32_t node, double* u, AcdfRange* range,
-                                            double* probability) {
+                                                 const AcdfMixture* mix, const int rows,
+                                                 const AcdfVisibilityMixture* mixture, const int visibility,
+                                                 uint32_t node, double* u, AcdfRange* range, double* probability) {
     double weight[ACDF_MAX_ROWS_MIXED], lower[ACDF_MAX_ROWS_MIXED], part[2], p = 1.0;
     int i;
     for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
@@ -199,9 +203,10 @@ ACDF_INLINE uint32_t acdf_visibility_sample_rows(const AcdfVisibilityTable* tabl
 }
 
 ACDF_INLINE uint32_t acdf_visibility_find_rows(const AcdfVisibilityTable* table, const AcdfBlend* blend,
-                                          const AcdfMixture* mix, const int rows, const AcdfVisibilityMixture* mixture,
-                                          const int visibility, uint32_t node, const uint32_t* square, AcdfRange* range,
-                                          double* probability) {
+                                               const AcdfMixture* mix, const int rows,
+                                               const AcdfVisibilityMixture* mixture, const int visibility,
+                                               uint32_t node, const uint32_t* square, AcdfRange* range,
+                                               double* probability) {
     double weight[ACDF_MAX_ROWS_MIXED], lower[ACDF_MAX_ROWS_MIXED], part[2], p = 1.0;
     int i, lit = rows > 0 && acdf_mixture_sum(mix) > 0.0; /* not within a bright tile */
     for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
@@ -224,34 +229,36 @@ ACDF_INLINE uint32_t acdf_visibility_find_rows(const AcdfVisibilityTable* table,
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* The walks for as many rows of normals and of visibility as there are, each known to the compiler where that is usual.
+/* The walks for as many rows of normals and of visibility as there are, each known to the compiler where that is
+ * usual.
  */
-#define ACDF_VISIBILITY_WALK(rows, visibility)                                                                              \
+#define ACDF_VISIBILITY_WALK(rows, visibility)                                                                     \
     if (mix->count == (rows) && mixture->count == (visibility)) return ACDF_VISIBILITY_CALL(rows, visibility)
-#define ACDF_VISIBILITY_WALKS                                                                                           \
-    ACDF_VISIBILITY_WALK(3, 1);                                                                                         \
-    ACDF_VISIBILITY_WALK(3, 2);                                                                                         \
-    ACDF_VISIBILITY_WALK(3, 4);                                                                                         \
-    ACDF_VISIBILITY_WALK(1, 1);                                                                                         \
-    ACDF_VISIBILITY_WALK(1, 2);                                                                                         \
-    ACDF_VISIBILITY_WALK(1, 4);                                                                                         \
+#define ACDF_VISIBILITY_WALKS                                                                                      \
+    ACDF_VISIBILITY_WALK(3, 1);                                                                                    \
+    ACDF_VISIBILITY_WALK(3, 2);                                                                                    \
+    ACDF_VISIBILITY_WALK(3, 4);                                                                                    \
+    ACDF_VISIBILITY_WALK(1, 1);                                                                                    \
+    ACDF_VISIBILITY_WALK(1, 2);                                                                                    \
+    ACDF_VISIBILITY_WALK(1, 4);                                                                                    \
     return ACDF_VISIBILITY_CALL(mix->count, mixture->count)
 
 /* Samples a tile, as acdf_blend_sample_below does, of a mixture as a mixture sees it (which has a row at least). */
 ACDF_FN uint32_t acdf_visibility_sample_below(const AcdfVisibilityTable* table, const AcdfBlend* blend,
-                                         const AcdfMixture* mix, const AcdfVisibilityMixture* mixture, uint32_t node,
-                                         double* u, AcdfRange* range, double* probability) {
-#define ACDF_VISIBILITY_CALL(rows, visibility)                                                                              \
+                                              const AcdfMixture* mix, const AcdfVisibilityMixture* mixture,
+                                              uint32_t node, double* u, AcdfRange* range, double* probability) {
+#define ACDF_VISIBILITY_CALL(rows, visibility)                                                                     \
     acdf_visibility_sample_rows(table, blend, mix, rows, mixture, visibility, node, u, range, probability)
     ACDF_VISIBILITY_WALKS;
 #undef ACDF_VISIBILITY_CALL
 }
 
 /* Finds the tile of a grid square, as acdf_blend_find_below does. */
-ACDF_FN uint32_t acdf_visibility_find_below(const AcdfVisibilityTable* table, const AcdfBlend* blend, const AcdfMixture* mix,
-                                       const AcdfVisibilityMixture* mixture, uint32_t node, const uint32_t* square,
-                                       AcdfRange* range, double* probability) {
-#define ACDF_VISIBILITY_CALL(rows, visibility)                                                                              \
+ACDF_FN uint32_t acdf_visibility_find_below(const AcdfVisibilityTable* table, const AcdfBlend* blend,
+                                            const AcdfMixture* mix, const AcdfVisibilityMixture* mixture,
+                                            uint32_t node, const uint32_t* square, AcdfRange* range,
+                                            double* probability) {
+#define ACDF_VISIBILITY_CALL(rows, visibility)                                                                     \
     acdf_visibility_find_rows(table, blend, mix, rows, mixture, visibility, node, square, range, probability)
     ACDF_VISIBILITY_WALKS;
 #undef ACDF_VISIBILITY_CALL

@@ -96,8 +96,7 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
     if (header.kind < ACDF_KIND_ENVIRONMENT || header.kind > ACDF_KIND_TABLE)
         report.add(2006, offsetof(AcdfHeader, kind), "kind %u is unknown", header.kind);
 #ifdef ACDF_ENVIRONMENT_ONLY
-    else if (header.kind != ACDF_KIND_ENVIRONMENT)
-        report.add(2006, offsetof(AcdfHeader, kind));
+    else if (header.kind != ACDF_KIND_ENVIRONMENT) report.add(2006, offsetof(AcdfHeader, kind));
 #endif
     for (u32 bit = 0; bit < 32; ++bit)
         if (header.required_features >> bit & 1)
@@ -130,7 +129,9 @@ bool belongs(int known, u32 kind) {
 }
 
 // Whether a reader that does not know a chunk must refuse the file.
-bool is_critical(int known) { return known != chunk_metadata && known != chunk_visibility && known != chunk_portals; }
+bool is_critical(int known) {
+    return known != chunk_metadata && known != chunk_visibility && known != chunk_portals;
+}
 
 bool is_all_printable(u32 type) {
     return is_printable(type, 0) && is_printable(type, 1) && is_printable(type, 2) && is_printable(type, 3);

@@ -75,27 +75,27 @@ struct Parts {
     const AcdfAxis* axes = nullptr; ///< description->axis_count
     const AcdfBin* bins = nullptr;  ///< description->bin_count
     const std::uint8_t* tree = nullptr;
-    std::uint32_t tree_units = 0;              ///< bins and tree: of curves alone
-    const AcdfPartner* partner = nullptr;      ///< null where the file is to be used alone
-    const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
+    std::uint32_t tree_units = 0;           ///< bins and tree: of curves alone
+    const AcdfPartner* partner = nullptr;   ///< null where the file is to be used alone
+    const std::uint8_t* metadata = nullptr; ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
     AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV, of the C library
     std::uint32_t halving_count = 0;
     AcdfBlock inflated = {}; ///< of the inflated chunks, from take_block; the caller gives it back
 
 #ifndef ACDF_ENVIRONMENT_ONLY
-    const AcdfViews* views = nullptr;          ///< of a BRDF
-    const float* nodes = nullptr;              ///< views->theta_count
-    const AcdfTiles* tiles = nullptr;          ///< null where bins share nothing
-    const AcdfSplit* splits = nullptr;         ///< tiles->tile_count - 1
-    const std::uint32_t* tile_roots = nullptr; ///< tiles->tile_count, or null: all tiles are cells
-    const std::uint8_t* rows = nullptr;        ///< tiles->row_count rows of tiles->tile_count - 1 codes
-    AcdfFast fast = {};                        ///< of the fast shape, which has no rows; else null
-    const AcdfLocalHeader* local = nullptr;    ///< of local environments
-    const AcdfBrightTile* bright_tiles = nullptr;         ///< local->bright_tile_count
-    AcdfVisibilityTable visibility = {};                ///< of local environments; its header is null where absent
-    AcdfPortalTable portals = {};              ///< beside visibility cells; its header is null where absent
-    class TreeSurvey* survey = nullptr;        ///< given by the caller: made where it costs nothing
+    const AcdfViews* views = nullptr;             ///< of a BRDF
+    const float* nodes = nullptr;                 ///< views->theta_count
+    const AcdfTiles* tiles = nullptr;             ///< null where bins share nothing
+    const AcdfSplit* splits = nullptr;            ///< tiles->tile_count - 1
+    const std::uint32_t* tile_roots = nullptr;    ///< tiles->tile_count, or null: all tiles are cells
+    const std::uint8_t* rows = nullptr;           ///< tiles->row_count rows of tiles->tile_count - 1 codes
+    AcdfFast fast = {};                           ///< of the fast shape, which has no rows; else null
+    const AcdfLocalHeader* local = nullptr;       ///< of local environments
+    const AcdfBrightTile* bright_tiles = nullptr; ///< local->bright_tile_count
+    AcdfVisibilityTable visibility = {};          ///< of local environments; its header is null where absent
+    AcdfPortalTable portals = {};                 ///< beside visibility cells; its header is null where absent
+    class TreeSurvey* survey = nullptr;           ///< given by the caller: made where it costs nothing
 #endif
 };
 

@@ -1,4 +1,5 @@
-// What files of curves and of shared tiles are checked for, which environments of halvings have none of. Not installed.
+// What files of curves and of shared tiles are checked for, which environments of halvings have none of. Not
+// installed.
 #pragma once
 
 #include "check/checker.h"

@@ -142,8 +142,8 @@ void check_bright_tile_rows(const Payload& payload, Report& report, const Parts&
         for (u32 b = 0; b < bins; ++b) {
             if (parts.bins[b].root >= parts.tiles->row_count || !(parts.bins[b].share > 0.0f)) continue;
             if (dark.in(parts.bins[b].root)) continue;
-            report.add(7007, payload.at(sizeof(AcdfLocalHeader) + i * sizeof(AcdfBrightTile)), "light %u in bin %u", i,
-                       b);
+            report.add(7007, payload.at(sizeof(AcdfLocalHeader) + i * sizeof(AcdfBrightTile)), "light %u in bin %u",
+                       i, b);
             break;
         }
     }

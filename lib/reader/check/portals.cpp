@@ -76,7 +76,8 @@ bool are_sums(const u32* sums, u32 size) {
 void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept {
     if (!parts.visibility.header) {
         // Visibility that are wrong are told elsewhere.
-        if (report.verdict().errors == 0) report.add(7016, payload.at(0), "there are portals, but no visibility cells");
+        if (report.verdict().errors == 0)
+            report.add(7016, payload.at(0), "there are portals, but no visibility cells");
         return;
     }
     if (!check_portal_size(payload, parts.visibility.header->row_count, report)) return;

@@ -11,8 +11,7 @@ constexpr Severity warning = Severity::warning;
 const Rule rules[] = {
     {1001, error, "open", "The file can be opened for reading."},
     {1002, error, "read", "The file is a regular file and all its bytes can be read."},
-    {1003, error, "memory",
-     "There is memory for the file, its inflated chunks and the checks."},
+    {1003, error, "memory", "There is memory for the file, its inflated chunks and the checks."},
     {1004, error, "file-limit", "The file is no larger than the reader's limit."},
 
     {2001, error, "header-size", "The file holds a whole header of 64 bytes."},
@@ -38,8 +37,7 @@ const Rule rules[] = {
      "`reserved` is "
      "zero."},
     {3010, error, "raw-length", "With codec 0, `raw_length` equals `stored_length`."},
-    {3011, error, "deflate-ratio",
-     "With codec 1 or 2, `raw_length` is less than 1032 (`stored_length` + 1)."},
+    {3011, error, "deflate-ratio", "With codec 1 or 2, `raw_length` is less than 1032 (`stored_length` + 1)."},
     {3012, error, "inflate-limit",
      "The compressed chunks, but for unknown ones, inflate to no more than the reader's limit."},
     {3013, error, "chunk-kind",
@@ -50,8 +48,7 @@ const Rule rules[] = {
 
     {4001, error, "chunk-crc", "`crc` is the CRC-32 of the stored bytes."},
     {4002, error, "padding", "The bytes between payloads and after the last one are zero."},
-    {4003, error, "zlib-stream",
-     "With codec 1, the stored bytes are one whole zlib stream of `raw_length` bytes."},
+    {4003, error, "zlib-stream", "With codec 1, the stored bytes are one whole zlib stream of `raw_length` bytes."},
     {4004, error, "payload-length",
      "DESC is 64 + 48 `axis_count` bytes long and BINS is 8 `bin_count` bytes long."},
     {4005, error, "planes",
@@ -69,8 +66,7 @@ const Rule rules[] = {
     {5010, error, "total", "`total` is finite and positive."},
     {5011, error, "axis-name",
      "The name of an axis is UTF-8, not empty, padded with zero bytes, and no other axis has it."},
-    {5012, error, "axis-role",
-     "`role` is 0 (sampled) or 1 (indexed), and one axis at least is sampled."},
+    {5012, error, "axis-role", "`role` is 0 (sampled) or 1 (indexed), and one axis at least is sampled."},
     {5013, error, "axis-measure", "`measure` is 0 (linear) or 1 (cosine)."},
     {5014, error, "axis-resolution", "`resolution` is 1 to 2147483647."},
     {5015, error, "axis-range", "`low` and `high` are finite and differ."},
@@ -102,8 +98,7 @@ const Rule rules[] = {
     {6009, error, "link", "A link leads to the start of a later curve."},
     {6010, error, "root", "The root of a bin that has a tree of its own is the start of a curve."},
     {6011, error, "curve-padding", "The padding inside and after a curve is zero."},
-    {6012, warning, "unreachable-curve",
-     "A curve is reached from a root (else its bytes are wasted)."},
+    {6012, warning, "unreachable-curve", "A curve is reached from a root (else its bytes are wasted)."},
     {6013, error, "tilt", "No tilt is -32768."},
     {6014, error, "tilt-split", "Below a segment of nonzero tilt no curve is on the same axis."},
     {6015, error, "dark-link", "A segment of probability 0 ends."},
@@ -123,8 +118,7 @@ const Rule rules[] = {
      "A split is on axis 0 or 1, its position strictly inside the box that it divides."},
     {6024, error, "tile-root", "The root of a tile is the start of a curve, or FFFFFFFF."},
     {6025, error, "rows", "ROWS comes with TILE, and holds `row_count` rows of a byte a split."},
-    {6026, error, "bin-row",
-     "The row of a bin is one of ROWS, of SUMS where there is that, or FFFFFFFF."},
+    {6026, error, "bin-row", "The row of a bin is one of ROWS, of SUMS where there is that, or FFFFFFFF."},
     {6027, error, "fast-shape",
      "SUMS and GRID come together, with TILE and roots of its tiles, and without ROWS, PLAC and PORT."},
     {6028, error, "sums",
@@ -154,22 +148,23 @@ const Rule rules[] = {
      "A local environment has the axes of an environment, and one or two of normals as in §6.7."},
     {7004, error, "normal-bins", "A local environment has as many bins as its normals' axes make."},
     {7005, error, "local-chunk",
-     "A local environment has LOCL, as long as its count of bright tiles says, at most 64; `cosine_share` is in [0, "
+     "A local environment has LOCL, as long as its count of bright tiles says, at most 64; `cosine_share` is in "
+     "[0, "
      "1)."},
-    {7006, error, "light",
+    {7006, error, "bright-tile",
      "A light is a tile, in ascending order, with the tile's box, a unit direction, a radius in (0, 2] and a "
      "positive finite share."},
-    {7007, error, "bright-tile-row",
-     "In the row of a bin of positive share a light's tile has probability 0."},
+    {7007, error, "bright-tile-row", "In the row of a bin of positive share a light's tile has probability 0."},
     {7008, error, "environment-share", "The share of an environment's bin is 1."},
-    {7009, error, "visibility",
-     "PLAC comes with TILE and is as long as its counts say, with at least one row."},
+    {7009, error, "visibility", "PLAC comes with TILE and is as long as its counts say, with at least one row."},
     {7010, error, "visibility-bounds",
      "The bounds of visibility cells are finite and rise, and the transform is finite."},
     {7011, error, "visibility-splits",
-     "Splits of visibility cells stand in preorder, at most 64 on a path, each met once, and lead to rows that are there."},
+     "Splits of visibility cells stand in preorder, at most 64 on a path, each met once, and lead to rows that are "
+     "there."},
     {7012, error, "visibility-split",
-     "A split of visibility cells is on one of axes 0 to 5, its position finite, its blend finite and not negative."},
+     "A split of visibility cells is on one of axes 0 to 5, its position finite, its blend finite and not "
+     "negative."},
     {7013, error, "visibility-columns",
      "The columns of splits of tiles are numbered from 0 in their order, all of them in each set; FFFF where a "
      "split has none."},
@@ -198,8 +193,7 @@ const Rule rules[] = {
 
     {9001, error, "table-measure", "The axes of a table have linear measures."},
     {9002, error, "table-axes", "The indexed axes of a table come before the sampled ones."},
-    {9003, error, "table-bins",
-     "A table has as many bins as the product of the resolutions of its indexed axes."},
+    {9003, error, "table-bins", "A table has as many bins as the product of the resolutions of its indexed axes."},
     {9004, error, "table-steps",
      "The ends of a table's axis are at most 2^100 in magnitude; a step of it is at least 2^-100, and at least "
      "2^-40 of the larger end."},

@@ -52,7 +52,8 @@ void check_bounds(const Payload& payload, const AcdfVisibility& h, Report& repor
 }
 
 // Walks the splits in preorder. A path's upper parts wait on a stack as deep as paths may be.
-bool check_splits(const Payload& payload, const AcdfVisibility& h, const AcdfVisibilitySplit* splits, Report& report) {
+bool check_splits(const Payload& payload, const AcdfVisibility& h, const AcdfVisibilitySplit* splits,
+                  Report& report) {
     struct Open {
         u32 node, depth;
     } open[ACDF_MAX_VISIBILITY_DEPTH + 1];
@@ -136,11 +137,11 @@ void check_visibility(const Payload& payload, Report& report, Parts& parts) noex
     const auto* columns = reinterpret_cast<const std::uint16_t*>(splits + header->split_count);
     const auto* sets = reinterpret_cast<const std::uint16_t*>(payload.data + sets_at(*header, tile_splits));
     const AcdfVisibilityTable table{header,
-                               splits,
-                               columns,
-                               header->further_sets > 0 ? sets : nullptr,
-                               payload.data + rows_at(*header, tile_splits),
-                               parts.local->bright_tile_count};
+                                    splits,
+                                    columns,
+                                    header->further_sets > 0 ? sets : nullptr,
+                                    payload.data + rows_at(*header, tile_splits),
+                                    parts.local->bright_tile_count};
     check_bounds(payload, *header, report);
     const bool split = check_splits(payload, *header, splits, report);
     const bool right = check_sets(payload, *header, table.set_of_row, tile_splits, report) && split;

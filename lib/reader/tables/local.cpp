@@ -301,7 +301,8 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     std::size_t at = sizeof(AcdfLocalTables) / 4;
     TileTablesMaker tiles(local.blend, env.columns, env.rows, !local.fast.grid);
     if (!tiles.make()) return nullptr;
-    const std::size_t bright_tiles = whole_lines((std::max(local.bright_tile_count, 1u) + 1) / 2 * sizeof(AcdfBrightTilePair) / 4),
+    const std::size_t bright_tiles = whole_lines((std::max(local.bright_tile_count, 1u) + 1) / 2 *
+                                                 sizeof(AcdfBrightTilePair) / 4),
                       facets = facet_words(local);
     const std::size_t group_hearts = group_heart_words(local), group_angles = whole_lines(local.fast.ends);
     const std::size_t groups = group_hearts > 0 ? group_hearts + group_angles : 0;

@@ -33,7 +33,7 @@ struct EntrySpan {
 struct ReachedSide {
     double low = 0.0, high = 1.0; ///< random numbers
     u32 first = 0, last = 1;      ///< positions
-    EntrySpan positions, numbers;    ///< that lie in it
+    EntrySpan positions, numbers; ///< that lie in it
 };
 
 /// And all of them.
@@ -48,7 +48,8 @@ struct EntryKind {
     u32 AcdfEntryAxis::*stride; ///< entries to the next one
     u32 AcdfEntryBin::*grid;
 };
-constexpr EntryKind kPositions = {&ReachedSide::positions, &AcdfEntryAxis::position_stride, &AcdfEntryBin::positions};
+constexpr EntryKind kPositions = {&ReachedSide::positions, &AcdfEntryAxis::position_stride,
+                                  &AcdfEntryBin::positions};
 constexpr EntryKind kNumbers = {&ReachedSide::numbers, &AcdfEntryAxis::number_stride, &AcdfEntryBin::numbers};
 
 class EntriesMaker {
@@ -293,8 +294,7 @@ bool EntriesMaker::make() {
     entries_a_cell_ = kEntriesACell;
     while (about(entries_a_cell_) > most) entries_a_cell_ /= 2.0;
     const std::size_t some = cells_ / 4; // curves, usually
-    if (!curves_.reserve(some * curve_words()) || !steps_.reserve(2 * some) || !pdfs_.reserve(some))
-        return false;
+    if (!curves_.reserve(some * curve_words()) || !steps_.reserve(2 * some) || !pdfs_.reserve(some)) return false;
     if (!bins_.add(bin_count_, AcdfEntryBin{}) || !grids_.add(16, 0)) return false; // so that none begins at 0
     for (u32 bin = 0; bin < bin_count_; ++bin) {
         if (widths_[bin].cells < kFewestBinCells) continue;
@@ -304,8 +304,8 @@ bool EntriesMaker::make() {
         bins_[bin].positions = static_cast<u32>(grids_.size());
         bins_[bin].numbers = bin_->positions + positions;
         Reached all = whole();
-        if (!grids_.add(std::size_t{positions} + numbers, 0) || !visit(table_.bins[bin].root, all, {true, true}, 0) ||
-            4 * words() > most_bytes_)
+        if (!grids_.add(std::size_t{positions} + numbers, 0) ||
+            !visit(table_.bins[bin].root, all, {true, true}, 0) || 4 * words() > most_bytes_)
             return false;
     }
     return true;

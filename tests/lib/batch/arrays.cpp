@@ -61,17 +61,17 @@ TEST(BatchArrays, OfLocalEnvironmentsAreThoseOfSingleCalls) {
         for (const std::size_t count : {kCount, std::size_t{1}, std::size_t{0}}) {
             Results single, batch;
             ASSERT_EQ(acdf_sample_local_array(file.get(), normals.data(), each, u.data(), count, single.w.data(),
-                                            single.p.data()),
+                                              single.p.data()),
                       1);
-            ASSERT_EQ(acdf_pdf_local_array(file.get(), normals.data(), each, single.w.data(), count,
-                                               single.again.data()),
-                      1);
+            ASSERT_EQ(
+                acdf_pdf_local_array(file.get(), normals.data(), each, single.w.data(), count, single.again.data()),
+                1);
             ASSERT_EQ(acdf_local_batch_sample(file.get(), normals.data(), each, u.data(), count, batch.w.data(),
                                               batch.p.data()),
                       1);
-            ASSERT_EQ(acdf_local_batch_pdf(file.get(), normals.data(), each, batch.w.data(), count,
-                                           batch.again.data()),
-                      1);
+            ASSERT_EQ(
+                acdf_local_batch_pdf(file.get(), normals.data(), each, batch.w.data(), count, batch.again.data()),
+                1);
             EXPECT_TRUE(single == batch) << each << ' ' << count;
         }
     }
@@ -88,13 +88,14 @@ TEST(BatchArrays, OfBrdfsAreThoseOfSingleCalls) {
         const std::vector<float> views = directions(0.0);
         for (const std::size_t each : {std::size_t{1}, std::size_t{7}, kCount}) {
             Results single, many;
-            acdf_sample_brdf_array(file.get(), views.data(), each, u.data(), kCount, single.w.data(), single.p.data());
+            acdf_sample_brdf_array(file.get(), views.data(), each, u.data(), kCount, single.w.data(),
+                                   single.p.data());
             acdf_pdf_brdf_array(file.get(), views.data(), each, single.w.data(), kCount, single.again.data());
             EXPECT_EQ(acdf_brdf_batch_sample(batch.get(), views.data(), each, u.data(), kCount, many.w.data(),
                                              many.p.data()),
                       1);
-            EXPECT_EQ(acdf_brdf_batch_pdf(batch.get(), views.data(), each, many.w.data(), kCount, many.again.data()),
-                      1);
+            EXPECT_EQ(
+                acdf_brdf_batch_pdf(batch.get(), views.data(), each, many.w.data(), kCount, many.again.data()), 1);
             EXPECT_TRUE(single == many) << name << ' ' << each;
         }
     }
@@ -110,13 +111,12 @@ TEST(BatchArrays, WriteNothingOfOtherKinds) {
     EXPECT_EQ(acdf_local_batch_sample(environment.get(), w.data(), 1, u.data(), kCount, results.w.data(),
                                       results.p.data()),
               0);
-    EXPECT_EQ(acdf_local_batch_sample(local.get(), w.data(), 0, u.data(), kCount, results.w.data(),
-                                      results.p.data()),
-              0);
+    EXPECT_EQ(
+        acdf_local_batch_sample(local.get(), w.data(), 0, u.data(), kCount, results.w.data(), results.p.data()), 0);
     EXPECT_EQ(acdf_local_batch_pdf(environment.get(), w.data(), 1, w.data(), kCount, results.p.data()), 0);
     const Batch batch(acdf_brdf_batch(brdf.get(), nullptr), acdf_brdf_batch_close);
-    EXPECT_EQ(acdf_brdf_batch_sample(batch.get(), w.data(), 0, u.data(), kCount, results.w.data(), results.p.data()),
-              0);
+    EXPECT_EQ(
+        acdf_brdf_batch_sample(batch.get(), w.data(), 0, u.data(), kCount, results.w.data(), results.p.data()), 0);
     EXPECT_EQ(acdf_brdf_batch_pdf(batch.get(), w.data(), 0, w.data(), kCount, results.p.data()), 0);
     EXPECT_EQ(acdf_brdf_batch(local.get(), &error), nullptr);
     EXPECT_EQ(error.code, ACDF_UNSUPPORTED);

@@ -42,7 +42,7 @@ struct Lookup {
 
 /// Of one sample of `channels`, by many.
 double sampled_variance(const LocalEnvironmentView& view, const build::Normal& normal, const Lookup& lookup,
-                      std::size_t channels, std::mt19937_64& random) {
+                        std::size_t channels, std::mt19937_64& random) {
     const int count = kSanitized ? 20000 : 400000;
     double sum[3] = {}, square = 0.0;
     for (int i = 0; i < count; ++i) {

@@ -1,5 +1,5 @@
-// Files that are made for an MIS partner: densities and samples agree, and are less noisy than files that are made to be
-// used alone.
+// Files that are made for an MIS partner: densities and samples agree, and are less noisy than files that are made
+// to be used alone.
 #include "tests/lib/build/partner.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/compress/chi_square.h"

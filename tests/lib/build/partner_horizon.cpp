@@ -65,8 +65,8 @@ struct Lamp {
 /// Sums see a sixty-fourth of a texel. Where that alone is above the horizon, it is as little of a cell.
 constexpr double kMost = 150.0;
 
-void expect_lamps_are_sampled(const std::vector<Lamp>& lamps, bool square, std::uint32_t columns, std::uint32_t rows,
-                            double brightness) {
+void expect_lamps_are_sampled(const std::vector<Lamp>& lamps, bool square, std::uint32_t columns,
+                              std::uint32_t rows, double brightness) {
     const compress::Target latlong = acdf_test::texel_target(columns, rows, [&](std::uint32_t c, std::uint32_t r) {
         const bool lit =
             std::any_of(lamps.begin(), lamps.end(), [&](const Lamp& l) { return l.column == c && l.row == r; });

@@ -1,5 +1,5 @@
-// Files with visibility cells with portals: a room with a window, in the light of a smooth sky. Sums over the window judge
-// them.
+// Files with visibility cells with portals: a room with a window, in the light of a smooth sky. Sums over the
+// window judge them.
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 
@@ -100,7 +100,9 @@ builder::LocalOptions of_room(std::vector<builder::Portal> portals, const Room& 
     builder::LocalOptions out;
     out.goal = builder::Goal::of_budget(64 << 10);
     out.visibility.point = point_of_room;
-    out.visibility.occluded = [room](const VisibilityPoint& p, const float* d) { return !leaves(room, p.position, d); };
+    out.visibility.occluded = [room](const VisibilityPoint& p, const float* d) {
+        return !leaves(room, p.position, d);
+    };
     out.visibility.portals = std::move(portals);
     return out;
 }

@@ -1,4 +1,5 @@
-// Files with visibility cells: a floor with a wall on it, in the light of a sky with a sun. Exact sums are the judge.
+// Files with visibility cells: a floor with a wall on it, in the light of a sky with a sun. Exact sums are the
+// judge.
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 
@@ -126,7 +127,8 @@ struct Exact {
     int lost = 0; ///< texels whose light is never sampled
 };
 
-Exact exact(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const VisibilityPoint& point, const Wall& wall) {
+Exact exact(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const VisibilityPoint& point,
+            const Wall& wall) {
     Exact out;
     double square = 0.0;
     for (int r = 0; r < kRows; ++r)
@@ -199,7 +201,9 @@ TEST(VisibilityFiles, AreUnbiasedWhereTheWallIsGone) {
     ACDF_NOT_SANITIZED();
     expect_unbiased(placed(), {1.0, 0.0, 0.0, 0.0}, 300);
 }
-TEST(VisibilityFiles, AreUnbiasedWhereTheWallStandsElsewhere) { expect_unbiased(placed(), {-2.0, -1.0, 4.0, 3.0}, 300); }
+TEST(VisibilityFiles, AreUnbiasedWhereTheWallStandsElsewhere) {
+    expect_unbiased(placed(), {-2.0, -1.0, 4.0, 3.0}, 300);
+}
 
 TEST(VisibilityFiles, FillTheirBudget) {
     EXPECT_LE(placed().local.bytes.size(), 96u << 10);
@@ -290,7 +294,9 @@ TEST(VisibilityFiles, ErrorsAreValues) {
         return found;
     };
     builder::LocalOptions thrown = with_visibility(24 << 10), empty = thrown, half = thrown, cells = thrown;
-    thrown.visibility.occluded = [](const VisibilityPoint&, const float*) -> bool { throw std::runtime_error("no"); };
+    thrown.visibility.occluded = [](const VisibilityPoint&, const float*) -> bool {
+        throw std::runtime_error("no");
+    };
     EXPECT_EQ(code(thrown), Code::callback_failed);
     empty.visibility.point = [](std::uint64_t, VisibilityPoint&) { return false; };
     EXPECT_EQ(code(empty), Code::bad_source);

@@ -1,5 +1,5 @@
-// Densities of many directions, about as they are (acdf/product/brdf_about.h), beside those of the cells that they may be
-// of.
+// Densities of many directions, about as they are (acdf/product/brdf_about.h), beside those of the cells that they
+// may be of.
 #include "tests/lib/batch/brdf.h"
 #include "tests/lib/reader/brdf_forms.h"
 #include "tests/lib/reader/tables/tables_pair.h"

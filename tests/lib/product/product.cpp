@@ -1,5 +1,5 @@
-// acdf/product/product.h and acdf/product/cut.h on files and lobes of every kind: that the density is exactly that of the samples,
-// that it integrates to 1, and that nothing is left out.
+// acdf/product/product.h and acdf/product/cut.h on files and lobes of every kind: that the density is exactly that
+// of the samples, that it integrates to 1, and that nothing is left out.
 #include "tests/lib/product/product_points.h"
 #include "tests/lib/reader/load.h"
 
@@ -147,7 +147,8 @@ TEST(Product, SeveralSamplesAreThoseOfSingleCalls) {
                     const bool in_parts = has_cut(point) && point.cut.count > 1;
                     together += in_parts && point.light.mix.count == ACDF_CUT_BATCH_ROWS;
                     by_fast_vectors += has_groups(point) && vectors;
-                    by_vectors += vectors && in_parts && point.light.codes[0] && acdf_cut_by_vectors(&light, &point.light);
+                    by_vectors +=
+                        vectors && in_parts && point.light.codes[0] && acdf_cut_by_vectors(&light, &point.light);
                     for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{16}, rng() % 70})
                         expect_single_calls(sampler, point, count, rng);
                 });
@@ -177,7 +178,8 @@ TEST(Product, SeveralSamplesOfFaintPartsAreThoseOfSingleCalls) {
                 AcdfCutPart& part = point.cut.part[i];
                 const double rows = scales[rng() % 5], bright_tiles = scales[rng() % 5];
                 for (double& weight : part.weight) weight *= rows;
-                for (std::uint32_t k = part.first_light; k < part.end_light; ++k) point.cut.light[k] *= bright_tiles;
+                for (std::uint32_t k = part.first_light; k < part.end_light; ++k)
+                    point.cut.light[k] *= bright_tiles;
                 part.bright_tiles = acdf_cut_bright_tiles(&point.cut, part.first_light, part.end_light);
                 part.sum = part.bright_tiles + ((part.weight[0] + part.weight[1]) + part.weight[2]);
                 part.probability *= scales[rng() % 5];
@@ -240,7 +242,8 @@ TEST(Product, NothingIsLeftOut) {
     });
 }
 
-// Where no light arrives the lobe's own sampler samples all: its samples count as 0, and the density is still right.
+// Where no light arrives the lobe's own sampler samples all: its samples count as 0, and the density is still
+// right.
 TEST(Product, HemispheresWithoutLightAreTheLobes) {
     LocalSpec spec = random_local(1, false);
     for (auto& light : spec.bright_tiles) light.share = 1e-30f;

@@ -1,5 +1,5 @@
-// Which part of a cut random numbers sample (acdf/product/cut_sample.h): the parts share the square of all numbers as their
-// splits say and by their probabilities, and the one whose share holds two numbers is sampled by them.
+// Which part of a cut random numbers sample (acdf/product/cut_sample.h): the parts share the square of all numbers
+// as their splits say and by their probabilities, and the one whose share holds two numbers is sampled by them.
 #include <acdf/product/cut_sample.h>
 
 #include <gtest/gtest.h>

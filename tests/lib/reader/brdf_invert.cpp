@@ -60,7 +60,8 @@ protected:
         AcdfRange range[2];
         double sign = 1.0, reach[2];
         float reflected[3];
-        EXPECT_TRUE(acdf_brdf_view(&brdf, wo.data(), &at) && acdf_brdf_half_position(&brdf, &at, wi.data(), &place, &sign));
+        EXPECT_TRUE(acdf_brdf_view(&brdf, wo.data(), &at) &&
+                    acdf_brdf_half_position(&brdf, &at, wi.data(), &place, &sign));
         EXPECT_GT(acdf_brdf_find(&brdf, &at, &place, range, nullptr), 0.0);
         acdf_brdf_reflect(&brdf, &at, place.position, sign, reflected, reach);
         return std::min((range[0].high - range[0].low) / reach[0], (range[1].high - range[1].low) / reach[1]);

@@ -122,8 +122,8 @@ public:
             return s;
         });
         const double s = enter(row, mix, g);
-        const std::size_t i =
-            sampled(u[1], 255.0 * total_of(mix.b), 16, [&](std::size_t t) { return tile_sum(row, mix, 16 * g + t); });
+        const std::size_t i = sampled(u[1], 255.0 * total_of(mix.b), 16,
+                                      [&](std::size_t t) { return tile_sum(row, mix, 16 * g + t); });
         cell = tile_box(16 * g + i);
         cell.p = s * tile_sum(row, mix, 16 * g + i) / (32767.0 * 255.0 * mix.whole * total_of(mix.b));
         return 16 * g + i;

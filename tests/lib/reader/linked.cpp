@@ -91,7 +91,8 @@ void expect_local_arrays(std::size_t each) {
     const AcdfFile* file = both.handle.get();
     const std::vector<float> normals = Both::directions(kCount / each + 1, -1.0);
     ASSERT_EQ(
-        acdf_sample_local_array(file, normals.data(), each, both.u.data(), kCount, both.w.data(), both.p.data()), 1);
+        acdf_sample_local_array(file, normals.data(), each, both.u.data(), kCount, both.w.data(), both.p.data()),
+        1);
     std::vector<float> again(kCount);
     ASSERT_EQ(acdf_pdf_local_array(file, normals.data(), each, both.w.data(), kCount, again.data()), 1);
     std::vector<double> lit(kCount / each);

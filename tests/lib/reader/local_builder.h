@@ -228,8 +228,8 @@ inline LocalSpec visibility_local() {
     LocalSpec spec = lit_local();
     spec.visibility.emplace();
     spec.visibility->splits = {{1.0f, 0.25f, 0, {visibility_row, 1}},
-                           {0.5f, 0.5f, 1, {visibility_row | 1, 2}},
-                           {0.1f, 0.2f, 5, {visibility_row | 2, visibility_row | 3}}};
+                               {0.5f, 0.5f, 1, {visibility_row | 1, 2}},
+                               {0.1f, 0.2f, 5, {visibility_row | 2, visibility_row | 3}}};
     spec.visibility->columns = {0, 1};
     spec.visibility->rows = {{240, 30, 200, 60}, {200, 255, 1, 254}, {0, 100, 128, 9}, {90, 17, 30, 250}};
     return spec;
@@ -245,7 +245,8 @@ inline LocalSpec regional_local() {
     return spec;
 }
 
-/// visibility_local with two windows in a wall at x = 4 and one in a wall at y = 3; the last place samples by rows alone.
+/// visibility_local with two windows in a wall at x = 4 and one in a wall at y = 3; the last place samples by rows
+/// alone.
 inline LocalSpec windowed_local() {
     LocalSpec spec = visibility_local();
     spec.portals.emplace();

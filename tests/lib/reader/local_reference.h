@@ -92,7 +92,8 @@ public:
             out.w.push_back(w);
         }
         out.length = std::hypot(served.n[0], served.n[1], served.n[2]);
-        for (std::size_t k = 0; k < bright_tile_count(); ++k) out.light.push_back(light_weight(k, served.n, out.length));
+        for (std::size_t k = 0; k < bright_tile_count(); ++k)
+            out.light.push_back(light_weight(k, served.n, out.length));
         for (const double v : out.light) out.bright_tiles += v;
         out.sum = out.bright_tiles + total_of(out.w);
         if (out.sum == 0.0) out.what = Source::nothing;

@@ -128,7 +128,8 @@ TEST(Portals, DirectionsFallWhereTheDensitySays) {
     }
 }
 
-/// Strata of random numbers stay together: next to each other, u sample directions of the same piece or of the next.
+/// Strata of random numbers stay together: next to each other, u sample directions of the same piece or of the
+/// next.
 TEST(Portals, NumbersAreClampedAndAtTheEndsSafe) {
     const LoadedLocal loaded(windowed_local());
     const AcdfLocalPoint point = loaded.view().at(kInside[0], kNormalsInside[0]);

@@ -126,7 +126,8 @@ TEST(Visibility, PositionsAreTransformed) {
         const float there[3] = {x[1] / 2, (x[2] + 1) / 2, (x[0] - 1) / 2};
         const AcdfLocalPoint a = loaded.view().at(x, kNormals[1]), b = other.view().at(there, kNormals[1]);
         ASSERT_EQ(a.visibility.count, b.visibility.count);
-        for (int k = 0; k < a.visibility.count; ++k) EXPECT_NEAR(a.visibility.weight[k], b.visibility.weight[k], 1e-6);
+        for (int k = 0; k < a.visibility.count; ++k)
+            EXPECT_NEAR(a.visibility.weight[k], b.visibility.weight[k], 1e-6);
     }
 }
 

@@ -1,7 +1,7 @@
-// BRDFs for shaders beside the reader's: each sample has the density that both tell of its direction, samples are the
-// reader's, and so are densities, but for the rounding of floats and directions next to a border.
-#include "tests/inputs/sanitized.h"
+// BRDFs for shaders beside the reader's: each sample has the density that both tell of its direction, samples are
+// the reader's, and so are densities, but for the rounding of floats and directions next to a border.
 #include "tests/lib/batch/brdf.h"
+#include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/brdf_forms.h"
 #include "tests/lib/reader/golden_files.h"
 #include "tests/lib/reader/half_vectors.h"

@@ -1,5 +1,5 @@
-// Walks for shaders beside the reader's: each sample has the density that both tell of its direction, samples are the
-// reader's, and so are densities, but for the rounding of floats and directions next to a border.
+// Walks for shaders beside the reader's: each sample has the density that both tell of its direction, samples are
+// the reader's, and so are densities, but for the rounding of floats and directions next to a border.
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/golden_files.h"
@@ -98,8 +98,7 @@ private:
 };
 
 struct WalkCounted {
-    int draws = 0, other_cells = 0, directions = 0, other_pdfs = 0, rounded = 0, normals = 0,
-        other_normals = 0;
+    int draws = 0, other_cells = 0, directions = 0, other_pdfs = 0, rounded = 0, normals = 0, other_normals = 0;
     WalkCounted& operator+=(const WalkCounted& more) {
         draws += more.draws, other_cells += more.other_cells;
         directions += more.directions, other_pdfs += more.other_pdfs;

@@ -114,8 +114,8 @@ TEST_F(BatchCommand, VisibilityIsThatOfTheScene) {
                "\"options\": {\"budget\": \"24KiB\", \"visibility\": true, \"scene\": \"roofs.instances\"}}\n");
     EXPECT_EQ(report({manifest})["done"], 1);
     EXPECT_EQ(report({manifest})["up_to_date"], 1);
-    ASSERT_EQ(run_acdf({"local", probes + "/a.pfm", "-o", folder / "alone.acdf", "--budget", "24KiB", "--visibility",
-                        "--scene", scene})
+    ASSERT_EQ(run_acdf({"local", probes + "/a.pfm", "-o", folder / "alone.acdf", "--budget", "24KiB",
+                        "--visibility", "--scene", scene})
                   .code,
               0);
     const std::vector<std::string> set{probes,

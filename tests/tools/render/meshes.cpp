@@ -108,8 +108,8 @@ TEST(MeshVisibility, AreMeasuredOnTheirMesh) {
         folder.room_file("y.acdf", true);
         const Result turned = measure("y.acdf", {"--scene", folder / "y.obj", "--scene-up", "y", "--points", "40"});
         ASSERT_EQ(turned.code, 0) << turned.err;
-        EXPECT_NEAR(Json::parse(turned.out).at("visibility").at("relative_variance"), visibility.at("relative_variance"),
-                    1e-3);
+        EXPECT_NEAR(Json::parse(turned.out).at("visibility").at("relative_variance"),
+                    visibility.at("relative_variance"), 1e-3);
     }
     const Result text = run_acdf({"measure", folder / "room.acdf", "--against", folder / "probe.pfm", "--scene",
                                   folder / "room.obj", "--points", "9"});

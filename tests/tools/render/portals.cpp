@@ -40,7 +40,8 @@ TEST(MeshPortals, AreToldByCornersAndByAScene) {
     ASSERT_EQ(one.code, 0) << one.err;
     ASSERT_EQ(two.code, 0) << two.err;
     write_text(folder / "y.obj", room(true));
-    const Result y_up = folder.local("y.acdf", {"--scene-up", "y", "--visibility", "--portal", kOpeningYUp}, "y.obj");
+    const Result y_up =
+        folder.local("y.acdf", {"--scene-up", "y", "--visibility", "--portal", kOpeningYUp}, "y.obj");
     ASSERT_EQ(y_up.code, 0) << y_up.err;
     const Opened a(folder / "one.acdf"), b(folder / "two.acdf"), c(folder / "y.acdf");
     ASSERT_TRUE(a.file.local().has_portals());
@@ -58,12 +59,13 @@ TEST(MeshPortals, AreToldByCornersAndByAScene) {
 
     const Json info = Json::parse(run_acdf({"info", "--json", folder / "one.acdf"}).out);
     EXPECT_EQ(info.at("local").at("portals").at("count"), 1);
-    EXPECT_NE(std::string(info.at("options")).find("--visibility --portal \"-2,0,2 2,0,2 2,2,2\""), std::string::npos);
+    EXPECT_NE(std::string(info.at("options")).find("--visibility --portal \"-2,0,2 2,0,2 2,2,2\""),
+              std::string::npos);
     const Result text = run_acdf({"info", folder / "one.acdf"});
     EXPECT_NE(text.out.find("1 portals, 1 maps"), std::string::npos) << text.out;
     EXPECT_EQ(run_acdf({"validate", folder / "one.acdf"}).code, 0);
-    EXPECT_EQ(run_acdf({"plot", folder / "one.acdf", "-o", folder / "plot.png", "--position", "0,-1,0.1", "--normal",
-                        "0,0,1"})
+    EXPECT_EQ(run_acdf({"plot", folder / "one.acdf", "-o", folder / "plot.png", "--position", "0,-1,0.1",
+                        "--normal", "0,0,1"})
                   .code,
               0);
 

@@ -1,5 +1,5 @@
-// Files with visibility cells held to sums over all texels, at what a camera sees and anywhere: docs/make/visibility.sh does the
-// same with real probes.
+// Files with visibility cells held to sums over all texels, at what a camera sees and anywhere:
+// docs/make/visibility.sh does the same with real probes.
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
 #include "tests/tools/render/scenes.h"
@@ -92,7 +92,8 @@ void expect_as_summed(Viewed& scene, const std::vector<std::vector<std::string>>
 TEST(RenderVisibility, AreAsSummedBehindAWall) {
     ACDF_NOT_SANITIZED();
     Viewed scene(test::small_scene("\"full-cdf\""));
-    expect_as_summed(scene, {{"local:24KiB"}, {"visibility:24KiB"}, {"visibility-cache:8x4"}, {"visibility:24KiB", "cosine"}});
+    expect_as_summed(
+        scene, {{"local:24KiB"}, {"visibility:24KiB"}, {"visibility-cache:8x4"}, {"visibility:24KiB", "cosine"}});
 }
 
 TEST(RenderVisibility, AreAsSummedInARoom) {

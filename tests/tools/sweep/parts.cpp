@@ -128,9 +128,7 @@ Sweep made_up_pictures() {
 
 TEST(SweepAdvice, PicturesDecideNotTheLightItself) {
     Sweep sweep = made_up_pictures();
-    const auto recommended = [&] {
-        return recommended_row(sweep.rows, sweep.visible, sweep.costs, sweep.numbers);
-    };
+    const auto recommended = [&] { return recommended_row(sweep.rows, sweep.visible, sweep.costs, sweep.numbers); };
     EXPECT_EQ(recommended().row, 0u); // sqrt(4 / 3.75) is 1.03
     EXPECT_FALSE(recommended().reached);
     sweep.rows[0].lit[hidden_partner].mean = 3.3; // sqrt(3.3 / 2.9) is 1.07, in one situation

@@ -115,7 +115,8 @@ TEST(SweepSurface, DrawnVariancesAreThoseOfTheSums) {
     const auto exact = point_variances(target, texel_pdfs(target, *sampler), points);
     const SurfaceVariances sums = summary(exact, Scale::picture);
     const SampledVariances two = sobol_variances(target, *sampler, points, exact, Scale::picture, 2, 1500);
-    // Of two Sobol' points: less than of two independent ones; with an MIS partner a set of one each: exactly those.
+    // Of two Sobol' points: less than of two independent ones; with an MIS partner a set of one each: exactly
+    // those.
     EXPECT_LT(two.alone, sums.alone.mean);
     EXPECT_NEAR(two.partner, sums.partner.mean, 0.1 * sums.partner.mean);
     const SampledVariances many = sobol_variances(target, *sampler, points, exact, Scale::picture, 64, 100);

@@ -63,8 +63,7 @@ public:
     /// processor has, up to `most`. Served by the loop, without tables, are files that are not isotropic, have a
     /// diffuse floor or trees of their own for each bin, or whose views share so few rows that tables would be out
     /// of proportion to the file. Fails where memory does; `out` then stays what it was.
-    static Status prepare(const BrdfView& view, BrdfBatch& out,
-                          Instructions most = Instructions::avx512) noexcept;
+    static Status prepare(const BrdfView& view, BrdfBatch& out, Instructions most = Instructions::avx512) noexcept;
 
     /// BrdfView::sample of wo[i] and u[i] into out[i], i < count.
     void sample(const float (*wo)[3], const double (*u)[2], std::size_t count, DirectionSample* out) const noexcept;
@@ -83,8 +82,8 @@ private:
     Instructions instructions_ = Instructions::none;
 };
 
-/// BrdfView::pdf of a view that was looked up (acdf_brdf_view) and wi[i] into out[i], i < count, bit for bit. Without
-/// tables of its own; by vectors where the file has runtime tables with a grid.
+/// BrdfView::pdf of a view that was looked up (acdf_brdf_view) and wi[i] into out[i], i < count, bit for bit.
+/// Without tables of its own; by vectors where the file has runtime tables with a grid.
 void brdf_pdf_batch(const AcdfBrdf& brdf, const AcdfBrdfView& view, const float (*wi)[3], std::size_t count,
                     float* out, Instructions most = Instructions::avx512) noexcept;
 

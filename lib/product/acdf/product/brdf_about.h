@@ -1,6 +1,6 @@
 /* About how dense a view's samples are in many directions: where product sampling looks for light that is reflected
- * (acdf/product/product.h). Floats, an operation for all directions before the next one, so that compilers take vectors.
- * One freestanding header over acdf/brdf.h, valid C99, C++17 and CUDA/HIP/SYCL. */
+ * (acdf/product/product.h). Floats, an operation for all directions before the next one, so that compilers take
+ * vectors. One freestanding header over acdf/brdf.h, valid C99, C++17 and CUDA/HIP/SYCL. */
 #ifndef ACDF_BRDF_ABOUT_H
 #define ACDF_BRDF_ABOUT_H
 
@@ -14,8 +14,8 @@ enum { ACDF_ABOUT_MOST = 64 }; /* directions at once */
 enum { ACDF_BRDF_FEWEST = 2 }; /* fewer are not worth vectors */
 
 /* acdf_brdf_view_pdf of wi[i] into out[i], i < count: without vectors they wait for memory together. */
-ACDF_FN void acdf_brdf_view_pdfs(const AcdfProductVectors* vectors, const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], size_t count,
-                                 float* out) {
+ACDF_FN void acdf_brdf_view_pdfs(const AcdfProductVectors* vectors, const AcdfBrdf* brdf, const AcdfBrdfView* view,
+                                 const float (*wi)[3], size_t count, float* out) {
     enum { TOGETHER = 16 };
     AcdfBrdfPosition place[TOGETHER];
     uint32_t cell[TOGETHER];
@@ -43,8 +43,9 @@ ACDF_FN void acdf_brdf_view_pdfs(const AcdfProductVectors* vectors, const AcdfBr
 }
 
 /* acdf_brdf_view_sample of u[i] into out[i], i < count, to the bit. */
-ACDF_FN void acdf_brdf_view_samples(const AcdfProductVectors* vectors, const AcdfBrdf* brdf, const AcdfBrdfView* view, const double (*u)[2],
-                                    size_t count, AcdfDirectionSample* out) {
+ACDF_FN void acdf_brdf_view_samples(const AcdfProductVectors* vectors, const AcdfBrdf* brdf,
+                                    const AcdfBrdfView* view, const double (*u)[2], size_t count,
+                                    AcdfDirectionSample* out) {
     size_t i;
 #if ACDF_SIDE_BY_SIDE
     if (vectors && count >= ACDF_BRDF_FEWEST) {
@@ -54,7 +55,6 @@ ACDF_FN void acdf_brdf_view_samples(const AcdfProductVectors* vectors, const Acd
 #endif
     for (i = 0; i < count; ++i) out[i] = acdf_brdf_view_sample(brdf, view, u[i][0], u[i][1]);
 }
-
 
 /* Of each direction: what its half-vector is, and where it lies. */
 typedef struct AcdfBrdfAbout {
@@ -113,7 +113,7 @@ ACDF_INLINE float acdf_about_bounded(float position, float last) {
 /* Azimuths and heights, as acdf_brdf_position has them. The arc tangent is that of Abramowitz and Stegun, 4.4.47,
  * over pi: within 1e-5. */
 ACDF_INLINE void acdf_about_positions(const AcdfBrdf* brdf, const AcdfBrdfView* view, uint32_t count,
-                                   AcdfBrdfAbout* a) {
+                                      AcdfBrdfAbout* a) {
     const float turn0 = (float)view->turn[0], turn1 = (float)view->turn[1];
     const float columns = (float)brdf->columns, rows = (float)brdf->rows;
     const float last0 = acdf_about_last(brdf->columns), last1 = acdf_about_last(brdf->rows);
@@ -170,8 +170,9 @@ ACDF_INLINE void acdf_about_cells(const AcdfBrdf* brdf, const AcdfBrdfView* view
 /* About acdf_brdf_view_pdfs, in a fraction of the time: of cells that lie less than a sixteenth of their height, or
  * one position, before it. Azimuths are told better: beyond some of them nothing is reflected. At most 1e30; 0
  * where there are none, never NaN. */
-ACDF_OUTLINE_ON_CPU void acdf_brdf_view_pdfs_about(const AcdfProductVectors* vectors, const AcdfBrdf* brdf, const AcdfBrdfView* view,
-                                                   const float (*wi)[3], size_t count, float* out) {
+ACDF_OUTLINE_ON_CPU void acdf_brdf_view_pdfs_about(const AcdfProductVectors* vectors, const AcdfBrdf* brdf,
+                                                   const AcdfBrdfView* view, const float (*wi)[3], size_t count,
+                                                   float* out) {
     const float scale = (float)((double)brdf->columns * (double)brdf->rows / (8.0 * ACDF_PI));
     AcdfBrdfAbout a;
     size_t first, i;

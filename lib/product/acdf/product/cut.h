@@ -1,7 +1,7 @@
 /* A cut through the tiles of a local environment map: boxes that cover the sphere, each a split of the file with
  * all below it, each with a probability of its own. What product sampling weighs at a shading point
- * (acdf/product/product.h). One freestanding header over acdf/local.h, valid C99, C++17 and CUDA/HIP/SYCL, with the same
- * contract.
+ * (acdf/product/product.h). One freestanding header over acdf/local.h, valid C99, C++17 and CUDA/HIP/SYCL, with the
+ * same contract.
  *
  * Within a part the density is that of the local map, light times cosine; how much each part gets is up to whoever
  * made the cut. A direction's part is found by the cut's own splits, then the map's walk goes on from there: what
@@ -16,13 +16,17 @@
 extern "C" {
 #endif
 
-enum { ACDF_CUT_MAX_PARTS = 96, ACDF_CUT_BLOCKS = ACDF_CUT_MAX_PARTS / ACDF_BLOCK_CELLS, ACDF_CUT_MAX_BRIGHT_TILES = 64 };
+enum {
+    ACDF_CUT_MAX_PARTS = 96,
+    ACDF_CUT_BLOCKS = ACDF_CUT_MAX_PARTS / ACDF_BLOCK_CELLS,
+    ACDF_CUT_MAX_BRIGHT_TILES = 64
+};
 
 /* A box: what lies below a split or in a tile. What samples and densities read stands first. */
 typedef struct AcdfCutPart {
     double numbers[2][2];               /* random numbers that sample it: from low to high of axis 0, of axis 1 */
     double weight[ACDF_MAX_ROWS_MIXED]; /* what each row gives to it */
-    double bright_tiles;                      /* weights of the bright tiles in it */
+    double bright_tiles;                /* weights of the bright tiles in it */
     double sum;                         /* of all weights */
     double probability;                 /* of the cut, for its maker to set */
     uint16_t node;                      /* the split, or the tile with its flag */
@@ -44,8 +48,8 @@ typedef struct AcdfCut {
     int nearest; /* which of the rows weighs most */
     AcdfCutPart part[ACDF_CUT_MAX_PARTS];
     AcdfCutSplit split[ACDF_CUT_MAX_PARTS - 1];
-    uint32_t boxes[ACDF_CUT_BLOCKS][16]; /* `numbers` of 16 parts each, as AcdfSquares has boxes */
-    double light[ACDF_CUT_MAX_BRIGHT_TILES];   /* weight of each */
+    uint32_t boxes[ACDF_CUT_BLOCKS][16];     /* `numbers` of 16 parts each, as AcdfSquares has boxes */
+    double light[ACDF_CUT_MAX_BRIGHT_TILES]; /* weight of each */
 } AcdfCut;
 
 ACDF_FN double acdf_cut_bright_tiles(const AcdfCut* cut, uint32_t first, uint32_t end) {
@@ -54,7 +58,8 @@ ACDF_FN double acdf_cut_bright_tiles(const AcdfCut* cut, uint32_t first, uint32_
     return sum;
 }
 
-/* The whole as one part, of probability 1. For points that bright tiles and shared tiles serve (ACDF_LOCAL_BLEND). */
+/* The whole as one part, of probability 1. For points that bright tiles and shared tiles serve (ACDF_LOCAL_BLEND).
+ */
 ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut) {
     AcdfCutPart* whole = &cut->part[0];
     uint32_t i;
@@ -66,7 +71,8 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
         for (i = 0; i < local->bright_tile_count; i += 2)
             acdf_store_weights(acdf_bright_tile_pair_weights(pair++, &horizon), &cut->light[i]);
     } else
-        for (i = 0; i < local->bright_tile_count; ++i) cut->light[i] = acdf_local_bright_tile_weight(local, point, i);
+        for (i = 0; i < local->bright_tile_count; ++i)
+            cut->light[i] = acdf_local_bright_tile_weight(local, point, i);
     whole->node = (uint16_t)acdf_blend_root(&local->blend);
     whole->entry = (uint16_t)(local->tables ? local->tables->tiles.root : 0);
     whole->depth = 0;
@@ -138,7 +144,7 @@ ACDF_FN double acdf_cut_share(const AcdfLocal* local, const AcdfLocalPoint* poin
 ACDF_FN double acdf_cut_see(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCutPart* part,
                             AcdfCutPart* upper, double low, double* high) {
     const double odds = acdf_visibility_odds(&local->visibility, local->blend.tiles->codebook, &point->visibility,
-                                        point->visibility.count, part->node);
+                                             point->visibility.count, part->node);
     double scale;
     int i;
     if (!(odds >= 0.0)) return low;
@@ -153,7 +159,7 @@ ACDF_FN double acdf_cut_see(const AcdfLocal* local, const AcdfLocalPoint* point,
 
 /* The bright tiles of the halves of a part, whose numbers `upper` has, too. */
 ACDF_FN void acdf_cut_share_bright_tiles(const AcdfLocal* local, const AcdfCut* cut, AcdfCutPart* part,
-                                   AcdfCutPart* upper) {
+                                         AcdfCutPart* upper) {
     const uint32_t end = part->end_light;
     uint32_t k, count = 0;
     double sum[2] = {0.0, 0.0};
@@ -205,9 +211,9 @@ ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* p
     }
 }
 
-/* A direction from which a part is lit much: of its brightest light, where bright tiles give it more than all else; else
- * the middle of the tile that is reached where the walk always takes the half to which the nearest bin gives more.
- * Returns the tile's number. */
+/* A direction from which a part is lit much: of its brightest light, where bright tiles give it more than all else;
+ * else the middle of the tile that is reached where the walk always takes the half to which the nearest bin gives
+ * more. Returns the tile's number. */
 ACDF_CALLED uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                     int number, float direction[3]) {
     const AcdfCutPart* part = &cut->part[number];
@@ -239,7 +245,8 @@ ACDF_CALLED uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint
         node = split->child[upper];
     }
     acdf_box_middle(local, box, direction);
-    return node & ACDF_TILE_FLAG ? node & ~ACDF_TILE_FLAG : part->tile; /* where only bright tiles shine, and not here */
+    return node & ACDF_TILE_FLAG ? node & ~ACDF_TILE_FLAG
+                                 : part->tile; /* where only bright tiles shine, and not here */
 }
 
 /* Solid angle of a part, sr. */

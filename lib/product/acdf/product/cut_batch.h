@@ -1,6 +1,6 @@
-/* Several samples from a cut side by side (acdf/product/cut_sample.h): what one of them waits for, memory and the splits and
- * curves on its way, the others use. Each is acdf_cut_sample's to the bit. `vectors` may be null. One freestanding header, valid C99,
- * C++17 and CUDA/HIP/SYCL; in kernels it makes single calls. */
+/* Several samples from a cut side by side (acdf/product/cut_sample.h): what one of them waits for, memory and the
+ * splits and curves on its way, the others use. Each is acdf_cut_sample's to the bit. `vectors` may be null. One
+ * freestanding header, valid C99, C++17 and CUDA/HIP/SYCL; in kernels it makes single calls. */
 #ifndef ACDF_CUT_BATCH_H
 #define ACDF_CUT_BATCH_H
 
@@ -51,7 +51,7 @@ ACDF_INLINE void acdf_cut_batch_parts(const AcdfCut* cut, const double (*u)[2], 
 
 /* Samples bright tiles, and tells which lanes sample from the mixture of their part. */
 ACDF_INLINE void acdf_cut_batch_lights(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
-                                      uint32_t count, AcdfCutLane* lane, AcdfCutLanes* mixed) {
+                                       uint32_t count, AcdfCutLane* lane, AcdfCutLanes* mixed) {
     uint32_t i, k;
     mixed->count = 0;
     for (i = 0; i < count; ++i) {
@@ -60,7 +60,8 @@ ACDF_INLINE void acdf_cut_batch_lights(const AcdfLocal* local, const AcdfLocalPo
         acdf_cut_range(one->part, one->range);
         for (k = 0; k < ACDF_CUT_BATCH_ROWS; ++k)
             ACDF_PREFETCH(point->codes[k] + (one->part->entry & ~ACDF_TILE_FLAG));
-        if (lit) one->tile = acdf_cut_sample_bright_tile(local, cut, one->part, one->u, one->range, &one->probability);
+        if (lit)
+            one->tile = acdf_cut_sample_bright_tile(local, cut, one->part, one->u, one->range, &one->probability);
         mixed->lane[mixed->count] = i;
         mixed->count += (uint32_t)!lit;
     }
@@ -79,8 +80,8 @@ ACDF_INLINE AcdfMixture acdf_cut_batch_mixture(const AcdfCutPart* part) {
 }
 
 /* Samples tiles of mixtures. */
-ACDF_INLINE void acdf_cut_batch_tiles(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutLanes* mixed,
-                                     AcdfCutLane* lane) {
+ACDF_INLINE void acdf_cut_batch_tiles(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                      const AcdfCutLanes* mixed, AcdfCutLane* lane) {
     const uint32_t* words = acdf_local_words(local->tables);
     const AcdfTileTables* tables = &local->tables->tiles;
     AcdfTileWalk walk[ACDF_CUT_BATCH];
@@ -134,7 +135,7 @@ ACDF_INLINE void acdf_cut_batch_tiles(const AcdfLocal* local, const AcdfLocalPoi
 /* Follows curves of tiles: to the cells that hold squares, or where there are none, to those that the lanes sample.
  */
 ACDF_INLINE void acdf_cut_batch_curves(const AcdfLocal* local, uint32_t count, const uint32_t (*square)[2],
-                                      AcdfCutLane* lane) {
+                                       AcdfCutLane* lane) {
     const uint8_t* tree = local->blend.tree;
     const uint32_t units = local->environment.tree_units;
     double inside[ACDF_CUT_BATCH];
@@ -172,7 +173,9 @@ ACDF_INLINE void acdf_cut_batch_curves(const AcdfLocal* local, uint32_t count, c
 }
 
 /* acdf_cut_sample of u[i] into out[i], i < count. */
-ACDF_FN void acdf_cut_sample_batch(const AcdfProductVectors* vectors, const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut, const double (*u)[2], size_t count, AcdfDirectionSample* out) {
+ACDF_FN void acdf_cut_sample_batch(const AcdfProductVectors* vectors, const AcdfLocal* local,
+                                   const AcdfLocalPoint* point, const AcdfCut* cut, const double (*u)[2],
+                                   size_t count, AcdfDirectionSample* out) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfCutLane lane[ACDF_CUT_BATCH];
     AcdfCutLanes mixed;
@@ -205,7 +208,9 @@ ACDF_FN void acdf_cut_sample_batch(const AcdfProductVectors* vectors, const Acdf
 }
 
 /* acdf_cut_pdf of directions[i] into out[i], i < count. */
-ACDF_FN void acdf_cut_pdf_batch(const AcdfProductVectors* vectors, const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut, const float (*directions)[3], size_t count, float* out) {
+ACDF_FN void acdf_cut_pdf_batch(const AcdfProductVectors* vectors, const AcdfLocal* local,
+                                const AcdfLocalPoint* point, const AcdfCut* cut, const float (*directions)[3],
+                                size_t count, float* out) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfCutLane lane[ACDF_CUT_BATCH];
     uint32_t square[ACDF_CUT_BATCH][2];
@@ -251,7 +256,9 @@ ACDF_FN void acdf_cut_pdf_batch(const AcdfProductVectors* vectors, const AcdfLoc
 }
 
 /* acdf_fast_cut_sample of u[i] into out[i], i < count; of cuts that are not empty. */
-ACDF_FN void acdf_fast_cut_sample_batch(const AcdfProductVectors* vectors, const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut, const double (*u)[2], size_t count, AcdfDirectionSample* out) {
+ACDF_FN void acdf_fast_cut_sample_batch(const AcdfProductVectors* vectors, const AcdfLocal* local,
+                                        const AcdfLocalPoint* point, const AcdfFastCut* cut, const double (*u)[2],
+                                        size_t count, AcdfDirectionSample* out) {
     size_t i;
 #if ACDF_SIDE_BY_SIDE
     if (vectors && count >= ACDF_FAST_CUT_FEWEST) {
@@ -263,7 +270,9 @@ ACDF_FN void acdf_fast_cut_sample_batch(const AcdfProductVectors* vectors, const
 }
 
 /* acdf_fast_cut_pdf of directions[i] into out[i], i < count; of cuts that are not empty. */
-ACDF_FN void acdf_fast_cut_pdf_batch(const AcdfProductVectors* vectors, const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut, const float (*directions)[3], size_t count, float* out) {
+ACDF_FN void acdf_fast_cut_pdf_batch(const AcdfProductVectors* vectors, const AcdfLocal* local,
+                                     const AcdfLocalPoint* point, const AcdfFastCut* cut,
+                                     const float (*directions)[3], size_t count, float* out) {
     size_t i;
 #if ACDF_SIDE_BY_SIDE
     if (vectors && count >= ACDF_FAST_CUT_FEWEST) {

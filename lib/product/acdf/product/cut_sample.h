@@ -1,4 +1,5 @@
-/* Sampling from a cut, and its density (acdf/product/cut.h). One freestanding header, valid C99, C++17 and CUDA/HIP/SYCL. */
+/* Sampling from a cut, and its density (acdf/product/cut.h). One freestanding header, valid C99, C++17 and
+ * CUDA/HIP/SYCL. */
 #ifndef ACDF_CUT_SAMPLE_H
 #define ACDF_CUT_SAMPLE_H
 
@@ -61,8 +62,8 @@ ACDF_FN void acdf_cut_borders(AcdfCut* cut, const double* share) {
     }
 }
 
-/* Makes the cut ready to be sampled from: to be called when all parts have their probabilities, which need not add up
- * to 1. Parts without light get none. Where nothing is left the cut is emptied. */
+/* Makes the cut ready to be sampled from: to be called when all parts have their probabilities, which need not add
+ * up to 1. Parts without light get none. Where nothing is left the cut is emptied. */
 ACDF_FN void acdf_cut_finish(AcdfCut* cut) {
     /* Of parts and splits, so that a child's number finds its own without a branch that nobody guesses: part ~n
      * stands before split 0, which is in the middle. */
@@ -126,8 +127,8 @@ ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoi
         return tile;
     }
     if (point->visibility.count > 0)
-        return acdf_visibility_sample_below(&local->visibility, &local->blend, mix, &point->visibility, part->node, u, range,
-                                       inside);
+        return acdf_visibility_sample_below(&local->visibility, &local->blend, mix, &point->visibility, part->node,
+                                            u, range, inside);
     return acdf_blend_sample_below(&local->blend, mix, part->node, u, range, inside);
 }
 
@@ -141,8 +142,8 @@ ACDF_FN uint32_t acdf_cut_find_tile(const AcdfLocal* local, const AcdfLocalPoint
         return tile;
     }
     if (point->visibility.count > 0)
-        return acdf_visibility_find_below(&local->visibility, &local->blend, mix, &point->visibility, part->node, square, range,
-                                     inside);
+        return acdf_visibility_find_below(&local->visibility, &local->blend, mix, &point->visibility, part->node,
+                                          square, range, inside);
     return acdf_blend_find_below(&local->blend, mix, part->node, square, range, 0, inside);
 }
 
@@ -190,8 +191,8 @@ ACDF_INLINE int acdf_cut_guess(const AcdfCut* cut, const double u[2], int from) 
     return cut->count - 1;
 }
 
-/* Samples a part by numbers in [0, 1), where all before number `guess` are known not to be sampled: u becomes what is
- * left of the random numbers. */
+/* Samples a part by numbers in [0, 1), where all before number `guess` are known not to be sampled: u becomes what
+ * is left of the random numbers. */
 ACDF_INLINE const AcdfCutPart* acdf_cut_sample_guessed(const AcdfCut* cut, int guess, double u[2]) {
     const AcdfCutPart* part = &cut->part[guess];
     int i;
@@ -223,8 +224,8 @@ ACDF_INLINE int acdf_cut_samples_bright_tile(const AcdfCutPart* part, double u0)
 }
 
 /* Samples that light; u[0] becomes what is left of it, *probability that of the light. Returns its tile. */
-ACDF_FN uint32_t acdf_cut_sample_bright_tile(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part, double* u,
-                                     AcdfRange* range, double* probability) {
+ACDF_FN uint32_t acdf_cut_sample_bright_tile(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part,
+                                             double* u, AcdfRange* range, double* probability) {
     uint32_t k = part->first_light, chosen = part->end_light;
     double x = u[0] * part->sum, weight = 0.0;
     for (; k < part->end_light; ++k) {
@@ -277,7 +278,8 @@ ACDF_FN double acdf_cut_found_probability(const AcdfLocal* local, const AcdfCut*
     if (inside > 0.0) return acdf_cut_tile_probability(part, mix, inside);
     /* No row gives a light any probability. */
     while (light < part->end_light && local->bright_tiles[light].tile < tile) ++light;
-    if (light == part->end_light || local->bright_tiles[light].tile != tile || !(cut->light[light] > 0.0)) return 0.0;
+    if (light == part->end_light || local->bright_tiles[light].tile != tile || !(cut->light[light] > 0.0))
+        return 0.0;
     return acdf_positive(part->probability * (cut->light[light] / part->sum));
 }
 
@@ -313,16 +315,16 @@ ACDF_CALLED float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* poi
 
 /* The direction that what is left of the random numbers picks in a cell of probability p. */
 ACDF_INLINE AcdfDirectionSample acdf_cut_direction_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                               const AcdfCut* cut, const AcdfGrid* grid, const AcdfRange range[2],
-                                               const double u[2], double p) {
+                                                          const AcdfCut* cut, const AcdfGrid* grid,
+                                                          const AcdfRange range[2], const double u[2], double p) {
     AcdfDirectionSample out = acdf_local_direction_sample(local, point, grid, range, u, p);
     /* A slope makes the density depend on where the rounded direction lies. */
     if (range[0].tilt != 0.0 || range[1].tilt != 0.0) out.pdf = acdf_cut_pdf(local, point, cut, out.direction);
     return out;
 }
 
-/* Samples a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
- * no direction) where the cut is empty. */
+/* Samples a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0
+ * (and no direction) where the cut is empty. */
 ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                 const AcdfCut* cut, double u0, double u1) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);

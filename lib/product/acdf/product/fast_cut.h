@@ -3,8 +3,8 @@
  * (acdf/product/product.h). One freestanding header over acdf/local.h, valid C99, C++17 and CUDA/HIP/SYCL.
  *
  * In groups that are not open, tiles get what the rows give to them, and in tiles cells what the file does: light
- * times cosine. Probabilities of bright tiles, groups and tiles are integers, as those of rows are: samples and densities
- * agree to the last bit. */
+ * times cosine. Probabilities of bright tiles, groups and tiles are integers, as those of rows are: samples and
+ * densities agree to the last bit. */
 #ifndef ACDF_FAST_CUT_H
 #define ACDF_FAST_CUT_H
 
@@ -27,7 +27,7 @@ enum {
 /* Lights, at least one part that is none up to a multiple of sixteen, and groups are parts. */
 typedef struct AcdfFastCut {
     int32_t whole;                      /* the last end; 0: there is nothing to sample */
-    uint32_t bright_tiles;                    /* how many parts are bright tiles: a multiple of 16 */
+    uint32_t bright_tiles;              /* how many parts are bright tiles: a multiple of 16 */
     uint32_t count;                     /* of parts; a multiple of 16 */
     int32_t upper[ACDF_FAST_CUT_UPPER]; /* every sixteenth end, and all ones behind them */
     int32_t end[ACDF_FAST_CUT_PARTS];   /* cumulative weights */
@@ -41,7 +41,9 @@ ACDF_INLINE int acdf_fast_cut_serves(const AcdfLocal* local) {
 }
 
 /* How many parts stand before those of groups: bright tiles, and at least one that is none. */
-ACDF_INLINE uint32_t acdf_fast_cut_bright_tiles(const AcdfLocal* local) { return (local->bright_tile_count + 16u) & ~15u; }
+ACDF_INLINE uint32_t acdf_fast_cut_bright_tiles(const AcdfLocal* local) {
+    return (local->bright_tile_count + 16u) & ~15u;
+}
 
 /* ---- what a cut is made of -------------------------------------------------------------------------- */
 
@@ -162,7 +164,7 @@ ACDF_INLINE AcdfFastPart acdf_fast_cut_part(const int32_t* end, uint32_t i) {
 
 /* Samples a tile of a group; *share, which is the group's, becomes the tile's. */
 ACDF_INLINE uint32_t acdf_fast_cut_sample_tile(const AcdfLocalPoint* point, const AcdfFastCut* cut, uint32_t number,
-                                             double* u, AcdfFastShare* share) {
+                                               double* u, AcdfFastShare* share) {
     const uint32_t first = ACDF_FAST_GROUP * number, list = cut->open[number];
     AcdfFastTile tile;
     double whole, y;
@@ -216,8 +218,9 @@ ACDF_INLINE AcdfFastShare acdf_fast_cut_find(const AcdfLocalPoint* point, const 
 }
 
 /* Samples a tile by two numbers; `left` becomes what is left of them, *share that of acdf_fast_cut_find. */
-ACDF_INLINE uint32_t acdf_fast_cut_choose_part(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
-                                        const double u[2], double left[2], AcdfFastShare* share) {
+ACDF_INLINE uint32_t acdf_fast_cut_choose_part(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                               const AcdfFastCut* cut, const double u[2], double left[2],
+                                               AcdfFastShare* share) {
     const double x = acdf_fast_scaled(acdf_unit_interval(u[0]), (double)cut->whole);
     AcdfFastPart part;
     uint32_t block = 0, number;
@@ -250,8 +253,8 @@ ACDF_CALLED float acdf_fast_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint
     return acdf_local_fast_cell_pdf(local, &grid, range, &share);
 }
 
-/* Samples a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
- * no direction) where the cut is empty. */
+/* Samples a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0
+ * (and no direction) where the cut is empty. */
 ACDF_CALLED AcdfDirectionSample acdf_fast_cut_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                      const AcdfFastCut* cut, double u0, double u1) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);

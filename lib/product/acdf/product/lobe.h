@@ -1,5 +1,5 @@
-// What product sampling asks of a BRDF (acdf/product/product.h): of a file, or a renderer's own. C++17, header only,
-// freestanding. For kernels define ACDF_METHOD, for example as __host__ __device__.
+// What product sampling asks of a BRDF (acdf/product/product.h): of a file, or a renderer's own. C++17, header
+// only, freestanding. For kernels define ACDF_METHOD, for example as __host__ __device__.
 #pragma once
 
 #include <acdf/method.h>

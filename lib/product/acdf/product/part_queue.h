@@ -1,8 +1,8 @@
 // Which part of a cut to divide next (acdf/product/product.h). C++17, header only, freestanding.
 #pragma once
 
-#include <acdf/product/cut.h>
 #include <acdf/method.h>
+#include <acdf/product/cut.h>
 
 #include <cstdint>
 

@@ -3,8 +3,8 @@
 // freestanding.
 #pragma once
 
-#include <acdf/product/cut.h>
 #include <acdf/method.h>
+#include <acdf/product/cut.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // Sampling directions of light from the product of light, cosine and BRDF at a shading point, with their exact
-// density. C++17, header only, freestanding over acdf/product/cut_sample.h and acdf/brdf.h: no allocation, no exceptions,
-// no errors. For kernels define ACDF_METHOD, for example as __host__ __device__.
+// density. C++17, header only, freestanding over acdf/product/cut_sample.h and acdf/brdf.h: no allocation, no
+// exceptions, no errors. For kernels define ACDF_METHOD, for example as __host__ __device__.
 //
 //   acdf::ProductSampler sampler(local.data(), acdf::BrdfLobe(brdf.data()));   // of a LocalEnvironmentView, a
 //   BrdfView auto point = sampler.at(acdf::surface_frame(normal), wo);                  // once a shading point
@@ -46,10 +46,10 @@ struct ProductPoint {
     double share; ///< of the samples that the BRDF's own sampler samples; below 0: nothing is sampled
 };
 
-/// Made of the light, of a local environment file or of an environment file, and a lobe. Samples from bright tiles that
-/// shared tiles describe follow the product; all others mix those of the light's own density and of the BRDF's half
-/// and half. Holds views: valid while their files live. All functions are const, thread-safe, allocate and throw
-/// nothing.
+/// Made of the light, of a local environment file or of an environment file, and a lobe. Samples from bright tiles
+/// that shared tiles describe follow the product; all others mix those of the light's own density and of the BRDF's
+/// half and half. Holds views: valid while their files live. All functions are const, thread-safe, allocate and
+/// throw nothing.
 template <class AnyLobe>
 class ProductSampler {
 public:
@@ -79,7 +79,8 @@ public:
     /// Samples a direction; u0 and u1 in [0, 1]. pdf in sr^-1; 0 where nothing is sampled: it counts as 0, as do
     /// directions below the surface.
     ACDF_METHOD ProductSample sample(const Point& point, double u0, double u1) const noexcept;
-    /// The same of u[i] into out[i], i < count, to the bit: in less time where a point is sampled from several times.
+    /// The same of u[i] into out[i], i < count, to the bit: in less time where a point is sampled from several
+    /// times.
     ACDF_METHOD void sample(const Point& point, std::size_t count, const double (*u)[2],
                             ProductSample* out) const noexcept;
     /// Density in sr^-1 of a unit direction; exactly that of `sample` for what it returned. Positive wherever that
@@ -111,7 +112,7 @@ private:
         return point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0;
     }
     ACDF_METHOD void sample_batch(const Point& point, std::size_t count, const double (*u)[2],
-                                 ProductSample* out) const noexcept;
+                                  ProductSample* out) const noexcept;
 
     AcdfLocal light_;
     bool local_; ///< or an environment alone
@@ -222,7 +223,7 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
 /// Samples up to ACDF_CUT_BATCH of a point whose cut is sampled from, and its lobe.
 template <class AnyLobe>
 ACDF_METHOD void ProductSampler<AnyLobe>::sample_batch(const Point& point, std::size_t count, const double (*u)[2],
-                                                      ProductSample* out) const noexcept {
+                                                       ProductSample* out) const noexcept {
     std::size_t of_light[ACDF_CUT_BATCH], of_lobe[ACDF_CUT_BATCH], lit = 0;
     double rest[ACDF_CUT_BATCH][2];
     ProductSample sampled[ACDF_CUT_BATCH];

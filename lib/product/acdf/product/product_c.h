@@ -1,5 +1,5 @@
-/* Product sampling (acdf/product/product.h) from C: light times cosine times BRDF at a shading point, with its exact
- * density. Linked, not inline. Nothing is allocated; all functions are thread-safe.
+/* Product sampling (acdf/product/product.h) from C: light times cosine times BRDF at a shading point, with its
+ * exact density. Linked, not inline. Nothing is allocated; all functions are thread-safe.
  *
  *   AcdfProductPoint point;
  *   acdf_product_at(&local, &brdf, 64, frame, wo, &point);

@@ -1,5 +1,6 @@
-// Shading points of product sampling whose light is a local environment file of shared tiles (acdf/product/product.h): into
-// which parts its tree is divided, and which share of the samples they get. C++17, header only, freestanding.
+// Shading points of product sampling whose light is a local environment file of shared tiles
+// (acdf/product/product.h): into which parts its tree is divided, and which share of the samples they get. C++17,
+// header only, freestanding.
 #pragma once
 
 #include <acdf/product/cut_batch.h>
@@ -42,7 +43,8 @@ template <class AnyLobe>
 ACDF_METHOD void CutRating<AnyLobe>::sample_guides() noexcept {
     float world[LobeGuides::most][3], light[LobeGuides::most];
     of_.sample_guides(world, guides_);
-    acdf_cut_pdf_batch(of_.vectors, &of_.light, &of_.at, &cut_, world, static_cast<std::size_t>(guides_.count), light);
+    acdf_cut_pdf_batch(of_.vectors, &of_.light, &of_.at, &cut_, world, static_cast<std::size_t>(guides_.count),
+                       light);
     guides_.weigh(light);
 }
 

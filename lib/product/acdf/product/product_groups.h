@@ -1,5 +1,6 @@
-// Shading points of product sampling whose light is a local environment file of the fast shape (acdf/product/product.h):
-// which share of the samples its bright tiles, groups of tiles and tiles get. C++17, header only, freestanding.
+// Shading points of product sampling whose light is a local environment file of the fast shape
+// (acdf/product/product.h): which share of the samples its bright tiles, groups of tiles and tiles get. C++17,
+// header only, freestanding.
 //
 // All bright tiles and groups that have much light are looked at at once, so that a lobe which tells many densities
 // together does, and nothing waits for what was seen before. Then the groups that reflect most are opened: their
@@ -11,8 +12,8 @@
 
 namespace acdf {
 
-/// A point while it is prepared. Its parts, by number: bright tiles, one that is none, groups, and the tiles of open
-/// groups. Lights and groups that give nothing are no parts.
+/// A point while it is prepared. Its parts, by number: bright tiles, one that is none, groups, and the tiles of
+/// open groups. Lights and groups that give nothing are no parts.
 template <class AnyLobe>
 class GroupRating {
 public:
@@ -62,9 +63,9 @@ private:
     ACDF_METHOD void finish(AcdfFastCut& cut, float* probability) const noexcept;
 
     const PointOfLobe<AnyLobe>& of_;
-    int first_entry_;                                           ///< of the groups in the cut
-    int bright_tiles_, count_, all_;                                  ///< of parts: bright tiles, bright tiles and groups, and all
-    int open_ = 0, opened_[ACDF_FAST_CUT_OPEN];                 ///< parts that are groups whose tiles are looked at
+    int first_entry_;                           ///< of the groups in the cut
+    int bright_tiles_, count_, all_;            ///< of parts: bright tiles, bright tiles and groups, and all
+    int open_ = 0, opened_[ACDF_FAST_CUT_OPEN]; ///< parts that are groups whose tiles are looked at
     std::uint16_t entry_[most_parts + 1], part_of_[most_parts]; ///< of a part in the cut, and of that
     LobeGuides guides_;
     int guide_tile_[LobeGuides::most]; ///< no_tile: a light's
@@ -86,7 +87,8 @@ ACDF_METHOD int GroupRating<AnyLobe>::add(int number, int entry, float light, fl
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::measure() noexcept {
     const float* angles = acdf_local_group_angles(of_.light.tables);
-    const int ends = static_cast<int>(of_.light.fast.ends), bright_tiles = static_cast<int>(of_.light.bright_tile_count);
+    const int ends = static_cast<int>(of_.light.fast.ends),
+              bright_tiles = static_cast<int>(of_.light.bright_tile_count);
     const double of_all = 1.0 / of_.at.sum;
     const float unit = static_cast<float>(255.0 * of_.at.unit);
     std::int32_t masses[ACDF_FAST_CUT_GROUPS];
@@ -131,8 +133,8 @@ ACDF_METHOD std::uint32_t GroupRating<AnyLobe>::nearest_row() const noexcept {
                                       of_.light.fast.ends);
 }
 
-/// At bright tiles that are bright, and where groups with much light are lit most. In other groups the lobe is taken to
-/// be what it is in the one before.
+/// At bright tiles that are bright, and where groups with much light are lit most. In other groups the lobe is
+/// taken to be what it is in the one before.
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::look_at_much() noexcept {
     const std::uint8_t* hearts = acdf_local_group_hearts(of_.light.tables, nearest_row(), of_.light.fast.ends);
@@ -154,7 +156,8 @@ ACDF_METHOD void GroupRating<AnyLobe>::look_at_much() noexcept {
         }
     }
     look(much);
-    for (int i = bright_tiles_ + 1; i < count_; ++i) value_[i] = light_in_[i] > least_light ? value_[i] : value_[i - 1];
+    for (int i = bright_tiles_ + 1; i < count_; ++i)
+        value_[i] = light_in_[i] > least_light ? value_[i] : value_[i - 1];
 }
 
 template <class AnyLobe>

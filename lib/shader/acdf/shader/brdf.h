@@ -195,8 +195,8 @@ ACDF_FN4(AcdfVector, acdf_reflected, AcdfShaderView, view, ACDF_F32, azimuth, AC
 /* ---- densities of half-vectors ---------------------------------------------------------------------- */
 
 /* Density of a direction of height z where a walk ended: of the cell, and of the cosine's share. */
-ACDF_FN5(ACDF_F32, acdf_brdf_pdf_at, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32,
-         spread, ACDF_F32, z) {
+ACDF_FN5(ACDF_F32, acdf_brdf_pdf_at, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32, spread,
+         ACDF_F32, z) {
     ACDF_LET(ACDF_F32, lobe) =
         ACDF_MIN(end.given / view.sum * acdf_word_as_float(tables, end.leaf + 1u) * spread, 3.402823466e38f);
     if (view.diffuse == 0.0f) {
@@ -216,8 +216,8 @@ ACDF_FN5(ACDF_F32, acdf_brdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderView, view
     if (view.mix.root == ACDF_WALK_NONE) {
         return view.diffuse * ACDF_MAX(z, 0.0f) * 0.31830989f;
     }
-    return acdf_brdf_pdf_at(tables, view, acdf_walk_find(tables, view.mix, place.key0, place.key1),
-                                place.spread, z);
+    return acdf_brdf_pdf_at(tables, view, acdf_walk_find(tables, view.mix, place.key0, place.key1), place.spread,
+                            z);
 }
 
 /* ---- samples of half-vectors -------------------------------------------------------------------------- */

@@ -201,7 +201,8 @@ ACDF_FN3(AcdfVector, acdf_tiles_direction, ACDF_TABLES, tables, AcdfTileCell, ce
 
 /* ---- samples and densities ---------------------------------------------------------------------------- */
 
-/* 1: bright tiles and rows of grids serve a point. A compiler that knows the tables leaves them out where there are none.
+/* 1: bright tiles and rows of grids serve a point. A compiler that knows the tables leaves them out where there are
+ * none.
  */
 ACDF_FN2(ACDF_U32, acdf_tiles_serve, ACDF_TABLES, tables, AcdfShaderPoint, here) {
     return ACDF_SELECT(here.mix.root == ACDF_WALK_ON_GRIDS, ACDF_WORD(tables, ACDF_WALK_FAST), 0u);
@@ -230,8 +231,8 @@ ACDF_FN3(ACDF_F32, acdf_tiles_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, A
     return ACDF_MIN(given / (angle * acdf_tiles_height(tables, cell)), 3.402823466e38f);
 }
 
-/* Samples a direction in a tile; ACDF_WALK_ON_GRIDS: in one that the mixture samples. A group and a tile, then a band
- * and a cell, are chosen by one and the same loop: shaders have functions wherever they are called. */
+/* Samples a direction in a tile; ACDF_WALK_ON_GRIDS: in one that the mixture samples. A group and a tile, then a
+ * band and a cell, are chosen by one and the same loop: shaders have functions wherever they are called. */
 ACDF_FN4(AcdfVector, acdf_tiles_sample, ACDF_TABLES, tables, AcdfWalkMixture, mix, ACDF_U32, light, AcdfWalkNumbers,
          numbers) {
     ACDF_LET(ACDF_U32, grids) = ACDF_WORD(tables, ACDF_TILES_GRIDS);

@@ -15,11 +15,11 @@ extern "C" {
 /* Made once for a shading point, it serves all samples there. Up to three rows are mixed. */
 ACDF_STRUCT_BEGIN(AcdfShaderPoint)
 ACDF_FIELD(AcdfWalkMixture, mix)
-ACDF_FIELD(ACDF_U32, bright_tiles)    /* how many */
-ACDF_FIELD(ACDF_F32, light_sum) /* of their weights */
-ACDF_FIELD(ACDF_F32, sum)       /* of all weights */
-ACDF_FIELD(ACDF_F32, cosine)    /* share of the cosine lobe */
-ACDF_FIELD(ACDF_F32, x)         /* the unit normal */
+ACDF_FIELD(ACDF_U32, bright_tiles) /* how many */
+ACDF_FIELD(ACDF_F32, light_sum)    /* of their weights */
+ACDF_FIELD(ACDF_F32, sum)          /* of all weights */
+ACDF_FIELD(ACDF_F32, cosine)       /* share of the cosine lobe */
+ACDF_FIELD(ACDF_F32, x)            /* the unit normal */
 ACDF_FIELD(ACDF_F32, y)
 ACDF_FIELD(ACDF_F32, z)
 ACDF_FIELD(ACDF_F32, scale) /* of it to that of the weights */

@@ -16,7 +16,8 @@ extern "C" {
 
 /* ---- tables of the fast shape ----------------------------------------------------------------------- */
 
-/* Words of its header, which follows that of acdf/shader/tree.h. Visibility are words from the start of the tables. */
+/* Words of its header, which follows that of acdf/shader/tree.h. Visibility are words from the start of the tables.
+ */
 #define ACDF_TILES_COLUMNS 32u /* of the grid of directions */
 #define ACDF_TILES_ROWS 33u
 #define ACDF_TILES_GROUPS 34u /* of 16 tiles */
@@ -107,8 +108,8 @@ ACDF_FN2(AcdfTileSample, acdf_tiles_chosen, ACDF_U32, at, ACDF_U32, width) {
 }
 
 /* One of `count` from the first one on. */
-ACDF_FN4(AcdfTileSample, acdf_tiles_choose, ACDF_TABLES, tables, AcdfTileSums, sums, ACDF_U32, count, AcdfTileSample,
-         first) {
+ACDF_FN4(AcdfTileSample, acdf_tiles_choose, ACDF_TABLES, tables, AcdfTileSums, sums, ACDF_U32, count,
+         AcdfTileSample, first) {
     ACDF_VAR(AcdfTileSample, sampled) = first;
     ACDF_VAR(ACDF_U32, last) = count;
     ACDF_VAR(ACDF_U32, low) = 0u;
@@ -119,7 +120,8 @@ ACDF_FN4(AcdfTileSample, acdf_tiles_choose, ACDF_TABLES, tables, AcdfTileSums, s
             sums.weight0 * acdf_tiles_number(tables, sums.word, sums.wide, sums.first0 + middle - 1u) +
             sums.weight1 * acdf_tiles_number(tables, sums.word, sums.wide, sums.first1 + middle - 1u) +
             sums.weight2 * acdf_tiles_number(tables, sums.word, sums.wide, sums.first2 + middle - 1u);
-        ACDF_LET(ACDF_U32, border) = acdf_walk_border(ACDF_TO_F32(sum - low), ACDF_TO_F32(high - sum), sampled.width);
+        ACDF_LET(ACDF_U32, border) =
+            acdf_walk_border(ACDF_TO_F32(sum - low), ACDF_TO_F32(high - sum), sampled.width);
         if (sampled.at < border) {
             last = middle;
             high = sum;

@@ -3,9 +3,9 @@
  * processors and for shaders of every language (acdf/dialect.h).
  *
  * A tree of splits ends in leaves. A split is known by its key, which directions have too, so that one tree serves
- * samples and densities, and both multiply the same factors in the same order. Random numbers are whole, and what is
- * left of them is exact: a cell of probability p is sampled with p but for 2^-24 of it a split, which is where floats
- * put borders. */
+ * samples and densities, and both multiply the same factors in the same order. Random numbers are whole, and what
+ * is left of them is exact: a cell of probability p is sampled with p but for 2^-24 of it a split, which is where
+ * floats put borders. */
 #ifndef ACDF_SHADER_TREE_H
 #define ACDF_SHADER_TREE_H
 
@@ -17,7 +17,8 @@ extern "C" {
 
 /* ---- tables ----------------------------------------------------------------------------------------- */
 
-/* Words of the header; `link` is a node, or a leaf with its flag. Visibility are words from the start of the tables. */
+/* Words of the header; `link` is a node, or a leaf with its flag. Visibility are words from the start of the
+ * tables. */
 #define ACDF_WALK_SIZE 0u        /* of all, in words */
 #define ACDF_WALK_OCTAHEDRAL 1u  /* 1: positions lie on the octahedral square, 0: on a lat-long grid */
 #define ACDF_WALK_ENVIRONMENT 2u /* link of the tree of all normals */
@@ -33,7 +34,8 @@ extern "C" {
     11u /* f32, 256 pairs: what parts a code gives to the lower and to the upper half of a split */
 #define ACDF_WALK_CODE_ROWS 12u /* bytes, a code a split: `stride` of them a row */
 #define ACDF_WALK_STRIDE 13u
-#define ACDF_WALK_BRIGHT_TILES 14u /* 8 words each: direction (3), radius, share (f32), link, and two of no meaning */
+#define ACDF_WALK_BRIGHT_TILES                                                                                     \
+    14u /* 8 words each: direction (3), radius, share (f32), link, and two of no meaning */
 #define ACDF_WALK_BRIGHT_TILE_COUNT 15u
 #define ACDF_WALK_COSINE 16u     /* f32: share of a cosine lobe about the normal */
 #define ACDF_WALK_VIEWS 17u      /* of BRDFs, 4 words each (acdf/shader/brdf.h) */
@@ -203,7 +205,8 @@ ACDF_FN3(ACDF_U32, acdf_walk_border, ACDF_F32, lower, ACDF_F32, upper, ACDF_U32,
 }
 
 /* Leads numbers to a leaf. */
-ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_leaf, ACDF_TABLES, tables, AcdfWalkMixture, given, AcdfWalkNumbers, numbers) {
+ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_leaf, ACDF_TABLES, tables, AcdfWalkMixture, given, AcdfWalkNumbers,
+         numbers) {
     ACDF_LET(ACDF_U32, nodes) = ACDF_WORD(tables, ACDF_WALK_NODES);
     ACDF_VAR(AcdfWalkNumbers, left) = numbers;
     ACDF_VAR(AcdfWalkMixture, mix) = given;

@@ -7,8 +7,9 @@
  * cells of the octahedral square. The fast shape of local environments has tiles and grids instead
  * (acdf/shader/tiles.h, acdf/shader/grids.h).
  *
- * Densities are the reader's but for the rounding of floats, below 1e-5 of them. A sample is moved 2^-20 radians (or
- * 2^-20 of the square's side) inwards; the density of a direction so close to a border may be the neighbour's. */
+ * Densities are the reader's but for the rounding of floats, below 1e-5 of them. A sample is moved 2^-20 radians
+ * (or 2^-20 of the square's side) inwards; the density of a direction so close to a border may be the neighbour's.
+ */
 #ifndef ACDF_SHADER_WALK_H
 #define ACDF_SHADER_WALK_H
 
@@ -42,8 +43,8 @@ ACDF_FN3(ACDF_F32, acdf_walk_bright_tile_pdf, ACDF_TABLES, tables, AcdfShaderPoi
 }
 
 /* Both parts together: that of the light and that of the cosine to the normal. */
-ACDF_FN5(ACDF_F32, acdf_walk_combined_pdf, AcdfShaderPoint, here, ACDF_F32, light, ACDF_F32, x, ACDF_F32, y, ACDF_F32,
-         z) {
+ACDF_FN5(ACDF_F32, acdf_walk_combined_pdf, AcdfShaderPoint, here, ACDF_F32, light, ACDF_F32, x, ACDF_F32, y,
+         ACDF_F32, z) {
     ACDF_LET(ACDF_F32, cosine) = ACDF_MAX(here.x * x + here.y * y + here.z * z, 0.0f);
     if (here.cosine == 0.0f) {
         return light;
@@ -72,7 +73,8 @@ ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AC
         place.key1 = ACDF_SELECT((ACDF_BITS(z) >> 31u) != 0u, ACDF_WALK_SOUTH - cap, cap);
     }
     return acdf_walk_combined_pdf(
-        here, acdf_walk_bright_tile_pdf(tables, here, acdf_walk_find(tables, here.mix, place.key0, place.key1)), x, y, z);
+        here, acdf_walk_bright_tile_pdf(tables, here, acdf_walk_find(tables, here.mix, place.key0, place.key1)), x,
+        y, z);
 }
 
 /* ---- samples ------------------------------------------------------------------------------------------ */
@@ -115,7 +117,8 @@ ACDF_FN3(AcdfVector, acdf_walk_cosine, AcdfShaderPoint, here, ACDF_F32, u0, ACDF
 }
 
 /* Samples a light: its link becomes the end's leaf. */
-ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_bright_tile, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
+ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_bright_tile, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers,
+         numbers) {
     ACDF_VAR(AcdfWalkEnd, end);
     ACDF_VAR(ACDF_F32, rest) = here.light_sum;
     ACDF_VAR(ACDF_U32, light) = 0u;
@@ -142,7 +145,8 @@ ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_bright_tile, ACDF_TABLES, tables, AcdfSha
     return end;
 }
 
-/* Samples by bright tiles and rows: where a walk ends; of the fast shape the tile of a light, or ACDF_WALK_ON_GRIDS. */
+/* Samples by bright tiles and rows: where a walk ends; of the fast shape the tile of a light, or
+ * ACDF_WALK_ON_GRIDS. */
 ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_row, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
     ACDF_VAR(AcdfWalkNumbers, left) = numbers;
     ACDF_VAR(AcdfWalkMixture, mix) = here.mix;

@@ -220,7 +220,8 @@ TEST(LocalFit, TilesAreNotSpentOnLightsInVain) {
     const NormalBins bins = octahedral_bins(12);
     const Worth worths = worth(sky, bins, irradiance(light_points(sky), bins));
     constexpr std::uint32_t count = 1000;
-    ASSERT_GT(divide_tiles(sky, worths, count).bright_tiles, 2 * ACDF_MAX_BRIGHT_TILES); // by the rule for most probes
+    ASSERT_GT(divide_tiles(sky, worths, count).bright_tiles,
+              2 * ACDF_MAX_BRIGHT_TILES); // by the rule for most probes
     const LocalFit fit = fit_local(sky, bins, {count, 16384});
     EXPECT_LE(fit.tiles.bright_tiles, 2 * ACDF_MAX_BRIGHT_TILES);
     double largest = 0.0; // of those that hold light

@@ -115,8 +115,7 @@ TEST(MeasureBrdfBaselines, RglSamplesAsItsDensity) {
         const acdf::test::Bytes file = parts.bytes();
         const auto brdf = acdf::input::parse_rgl("t", file.data(), file.size());
         for (const double c : {1.0, 0.6, 0.1})
-            expect_samples_as_its_pdf(RglSampler(*brdf), view_at(c, -1.3), at(isotropic ? "iso" : "aniso", c),
-                                          32);
+            expect_samples_as_its_pdf(RglSampler(*brdf), view_at(c, -1.3), at(isotropic ? "iso" : "aniso", c), 32);
         // Three floats a number of vndf and of luminance, but for the marginals.
         const std::size_t slices = parts.slices();
         EXPECT_EQ(RglSampler(*brdf).bytes(), 4 * slices * (2 * (9 * 8 + 4 * 5) + 9 + 4));

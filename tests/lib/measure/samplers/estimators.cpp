@@ -1,6 +1,6 @@
 // Estimators: that none is biased, also where light is hidden, and that variances are those that theory knows.
-#include "tests/lib/measure/samplers/light_sampler_checks.h"
 #include "tests/lib/measure/samplers/baselines.h"
+#include "tests/lib/measure/samplers/light_sampler_checks.h"
 
 #include "measure/samplers/estimators.h"
 #include "measure/samplers/light_samplers.h"

@@ -1,6 +1,6 @@
 // Samplers of a probe's texels: that each samples by the density it tells, which is the one that it should have.
-#include "tests/lib/measure/samplers/light_sampler_checks.h"
 #include "tests/lib/measure/samplers/baselines.h"
+#include "tests/lib/measure/samplers/light_sampler_checks.h"
 
 #include "measure/samplers/downsampled_cdf.h"
 #include "measure/samplers/light_samplers.h"
@@ -45,7 +45,7 @@ TEST_P(TexelSamplers, SampleByTheirPdf) {
             point->move_to(facing(normals[i]));
             const bool sampled = point->sample(0.5, 0.5).pdf > 0.0f; // else tiles see no light
             expect_samples_as_its_pdf(*each.sampler, facing(normals[i]), {t.columns, t.rows, 1, is_square(t)},
-                                          each.name, {}, sampled ? 1.0 : 0.0);
+                                      each.name, {}, sampled ? 1.0 : 0.0);
         }
 }
 

@@ -94,7 +94,7 @@ TEST(Product, SamplesByItsPdf) {
             const auto sampler = product_sampler(light.map->file, surface.made->file, i % 2 ? 64 : 24);
             const SphereBins bins{64, 32, surface.name == "narrow" ? 12u : 6u};
             expect_samples_as_its_pdf(*sampler, at[static_cast<std::size_t>(i++)], bins,
-                                          light.name + ", " + surface.name, check);
+                                      light.name + ", " + surface.name, check);
         }
 }
 
@@ -108,7 +108,7 @@ TEST(Product, WarpedNumbersDrawByTheirDensity) {
     for (std::size_t i = 0; i < all_lights.size(); ++i)
         if (!is_fast(all_lights[i])) // which tells no numbers of a direction
             expect_samples_as_its_pdf(*product_warp_sampler(all_lights[i].map->file, brdf), at[2 * i],
-                                          SphereBins{64, 32, 12}, all_lights[i].name, check);
+                                      SphereBins{64, 32, 12}, all_lights[i].name, check);
 }
 
 /// Reflected light of a point, by summation over the grid of the light.

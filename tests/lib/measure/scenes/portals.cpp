@@ -1,7 +1,7 @@
 // What rooms are lit by elsewhere: portals, and what can be seen of tiles at cache points. That each samples by the
 // density it tells, and finds all the light that reaches a point.
-#include "tests/lib/measure/samplers/light_sampler_checks.h"
 #include "tests/lib/measure/samplers/baselines.h"
+#include "tests/lib/measure/samplers/light_sampler_checks.h"
 
 #include "input/brdf/brdf.h"
 #include "measure/scenes/portals.h"
@@ -165,7 +165,7 @@ TEST(Visibility, IsKnownAtCachePoints) {
     for (std::size_t i = 0; i < yard.points.size(); i += 40) {
         const ScenePoint& point = yard.points[i];
         expect_samples_as_its_pdf(*with, point.shading(), SphereBins{64, 32, 4}, "visibility",
-                                      SamplerCheck{4000, 1e-4, 0.0, 1e-4});
+                                  SamplerCheck{4000, 1e-4, 0.0, 1e-4});
         a->move_to(point.shading());
         b->move_to(point.shading());
         SphereBins{32, 16}.for_each([&](std::size_t, const float* w, double omega) {

@@ -43,7 +43,8 @@ Make chain_of_cells(std::uint32_t count) {
     return with_cells([=](VisibilitySpec& visibility) {
         visibility.splits.clear();
         for (std::uint32_t i = 0; i < count; ++i)
-            visibility.splits.push_back({float(i), 0.0f, 2, {visibility_row, i + 1 < count ? i + 1 : visibility_row | 1}});
+            visibility.splits.push_back(
+                {float(i), 0.0f, 2, {visibility_row, i + 1 < count ? i + 1 : visibility_row | 1}});
     });
 }
 
@@ -86,7 +87,8 @@ std::vector<Case> visibility_cases() {
         {7011, "itself", with_cells([](VisibilitySpec& p) { p.splits[0].part[1] = 0; })},
         {7011, "no_such_split", with_cells([](VisibilitySpec& p) { p.splits[0].part[1] = 3; })},
         {7011, "no_such_row", with_cells([](VisibilitySpec& p) { p.splits[1].part[0] = visibility_row | 4; })},
-        {7011, "high_bits", with_cells([](VisibilitySpec& p) { p.splits[1].part[1] = 0x80000000 | visibility_row; })},
+        {7011, "high_bits",
+         with_cells([](VisibilitySpec& p) { p.splits[1].part[1] = 0x80000000 | visibility_row; })},
         {7011, "split_left_over", with_cells([](VisibilitySpec& p) { p.splits[0].part[1] = visibility_row; })},
         {7011, "not_in_preorder", with_cells([](VisibilitySpec& p) {
              p.splits = {{1.0f, 0.0f, 0, {2, 1}},

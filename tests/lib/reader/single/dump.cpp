@@ -100,7 +100,8 @@ void repair(Bytes& bytes) {
         chunk.crc = crc(0, bytes.data() + chunk.offset, static_cast<std::size_t>(chunk.stored_length));
         std::memcpy(at, &chunk, sizeof chunk);
     }
-    header.header_crc = crc(crc(0, bytes.data(), offsetof(AcdfHeader, header_crc)), bytes.data() + sizeof header, table);
+    header.header_crc =
+        crc(crc(0, bytes.data(), offsetof(AcdfHeader, header_crc)), bytes.data() + sizeof header, table);
     std::memcpy(bytes.data(), &header, sizeof header);
 }
 

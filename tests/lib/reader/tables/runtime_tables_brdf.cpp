@@ -1,8 +1,8 @@
 // Runtime tables of BRDFs beside the walk that they stand for: the same samples and densities to the bit, on files
 // made by hand, of many cells and of the frozen ones.
+#include "tests/lib/batch/brdf.h"
 #include "tests/lib/reader/brdf_forms.h"
 #include "tests/lib/reader/tables/tables_pair.h"
-#include "tests/lib/batch/brdf.h"
 
 #include <fstream>
 #include <iterator>
@@ -129,7 +129,8 @@ TEST(RuntimeTablesOfBrdfs, GuessMostCells) {
     EXPECT_GT(right, 600);
 }
 
-/// Where a guess is wrong, samples go on beyond a side of its cell: there lies what the middle of that side touches.
+/// Where a guess is wrong, samples go on beyond a side of its cell: there lies what the middle of that side
+/// touches.
 TEST(RuntimeTablesOfBrdfs, NameCellsBeyondSides) {
     const BrdfPair pair(many_borders().encode());
     const AcdfBrdf brdf = pair.fast.brdf().data();

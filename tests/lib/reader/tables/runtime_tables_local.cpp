@@ -187,8 +187,8 @@ Normal horizon_of(const AcdfBrightTile& light, std::mt19937_64& random) {
     return {any[0] - along * d[0], any[1] - along * d[1], any[2] - along * d[2]};
 }
 
-// Tables weigh bright tiles two at a time, and most of a facet together: any number of them, and those that the horizon
-// cuts.
+// Tables weigh bright tiles two at a time, and most of a facet together: any number of them, and those that the
+// horizon cuts.
 TEST(LocalRuntimeTables, WeighLightsAsTheFileDoes) {
     std::size_t odd = 0, even = 0, cut_by_horizon = 0, of_facets = 0;
     for (std::uint32_t seed = 0; seed < 60; ++seed) {
@@ -198,8 +198,9 @@ TEST(LocalRuntimeTables, WeighLightsAsTheFileDoes) {
         ++(fast.bright_tile_count % 2 > 0 ? odd : even);
         std::mt19937_64 random(seed);
         for (int i = 0; i < 100; ++i) {
-            const Normal normal = i % 2 == 0 ? random_direction(random)
-                                             : horizon_of(plain.bright_tiles[random() % plain.bright_tile_count], random);
+            const Normal normal = i % 2 == 0
+                                      ? random_direction(random)
+                                      : horizon_of(plain.bright_tiles[random() % plain.bright_tile_count], random);
             const AcdfLocalPoint a = pair.fast.local().at(normal.data()), b = pair.plain.local().at(normal.data());
             expect_same_lights(a, b);
             of_facets += a.facet != nullptr && a.facet->whole[0] != 0.0;

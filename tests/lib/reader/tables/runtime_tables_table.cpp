@@ -72,7 +72,7 @@ private:
         if (!grids || !acdf_table_step(&table, x, position, step)) return;
         ++asked_;
         told_ += acdf_entry_of_position(table.entries, grids, table.axis_count - table.indexed_count,
-                                     step + table.indexed_count) >= ACDF_ENTRY_CELL;
+                                        step + table.indexed_count) >= ACDF_ENTRY_CELL;
     }
 
     std::vector<std::uint8_t> bytes_;
