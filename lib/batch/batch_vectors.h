@@ -2,6 +2,8 @@
 // for. Nothing here may be inline with external linkage: see brdf_kernel.h.
 #pragma once
 
+#include <acdf/sphere.h>
+
 #include <immintrin.h>
 
 #include <cstdint>

@@ -154,7 +154,7 @@ const Rule rules[] = {
     {7006, error, "bright-tile",
      "A light is a tile, in ascending order, with the tile's box, a unit direction, a radius in (0, 2] and a "
      "positive finite share."},
-    {7007, error, "bright-tile-row", "In the row of a bin of positive share a light's tile has probability 0."},
+    {7007, error, "bright-tile-row", "In the row of a bin of positive share a bright tile has probability 0."},
     {7008, error, "environment-share", "The share of an environment's bin is 1."},
     {7009, error, "visibility", "PLAC comes with TILE and is as long as its counts say, with at least one row."},
     {7010, error, "visibility-bounds",

@@ -59,7 +59,10 @@ struct Random {
         double v[3], square;
         do {
             square = 0.0;
-            for (double& x : v) square += (x = 2.0 * unit() - 1.0) * x;
+            for (double& x : v) {
+                x = 2.0 * unit() - 1.0;
+                square += x * x;
+            }
         } while (square > 1.0 || square < 1e-4);
         const double scale = (below(32) == 0 ? 1.0 + 0.01 * unit() : 1.0) / std::sqrt(square);
         for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(v[i] * scale);

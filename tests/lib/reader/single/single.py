@@ -145,12 +145,13 @@ def measure(work, single, cxx):
 
 
 def main(work, single, cc, dump, what, cxx, *files):
+    single = pathlib.Path(single).resolve()
     work = pathlib.Path(work) / f"{what}_{pathlib.Path(cxx).name}"
     work.mkdir(parents=True, exist_ok=True)
     if what == "size":
-        measure(work, pathlib.Path(single), cxx)
+        measure(work, single, cxx)
     else:
-        check(work, pathlib.Path(single), cc, dump, what, cxx, files)
+        check(work, single, cc, dump, what, cxx, files)
 
 
 if __name__ == "__main__":
