@@ -12,7 +12,11 @@ public:
 
 #ifdef ACDF_ENVIRONMENT_ONLY
     /// Details are left out.
-    void add(int rule, std::uint64_t offset) noexcept;
+#if defined(__GNUC__)
+    __attribute__((noinline, cold))
+#endif
+    void
+    add(int rule, std::uint64_t offset) noexcept;
     template <class... Details>
     void add(int rule, std::uint64_t offset, const Details&...) noexcept {
         add(rule, offset);
