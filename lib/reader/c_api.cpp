@@ -36,13 +36,16 @@ AcdfLoadOptions plain() {
 } // namespace
 
 AcdfFile* acdf_open_with(const char* path, const AcdfLoadOptions* options, AcdfError* error) {
-    AcdfFile* file;
-    report(acdf::open_path(path, of(options ? *options : AcdfLoadOptions{}), file), error);
+    acdf::Status status;
+    AcdfFile* const file = acdf::open_path(path, of(options ? *options : AcdfLoadOptions{}), status);
+    report(status, error);
     return file;
 }
 AcdfFile* acdf_from_memory_with(const void* data, size_t size, const AcdfLoadOptions* options, AcdfError* error) {
-    AcdfFile* file;
-    report(acdf::open_bytes(data, data ? size : 0, of(options ? *options : AcdfLoadOptions{}), file), error);
+    acdf::Status status;
+    AcdfFile* const file =
+        acdf::open_bytes(data, data ? size : 0, of(options ? *options : AcdfLoadOptions{}), status);
+    report(status, error);
     return file;
 }
 

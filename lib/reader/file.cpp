@@ -39,9 +39,8 @@ void tidy(char* message) {
         if (static_cast<u8>(*c) < 0x20 || *c == 0x7F) *c = '?';
 }
 
-// `detail` may be empty.
-Status failure(int rule, u64 offset, const char* detail) {
-    Status status;
+// `detail` may be empty. Statuses are written in place: copies of their messages would be half of what opens files.
+void fail_at(Status& status, int rule, u64 offset, const char* detail) {
     status.code = code_of(rule);
     status.rule = rule;
     status.offset = offset;
@@ -53,20 +52,20 @@ Status failure(int rule, u64 offset, const char* detail) {
                   static_cast<ull>(offset), find_rule(rule)->sentence);
 #endif
     tidy(status.message);
-    return status;
 }
 
 #if defined(__GNUC__)
-__attribute__((format(printf, 2, 3)))
+__attribute__((format(printf, 3, 4)))
 #endif
-Status
-failure(int rule, const char* format, ...) {
+bool
+fail(Status& status, int rule, const char* format, ...) {
     char detail[160];
     va_list arguments;
     va_start(arguments, format);
     std::vsnprintf(detail, sizeof detail, format, arguments);
     va_end(arguments);
-    return failure(rule, u64{0}, detail);
+    fail_at(status, rule, 0, detail);
+    return false;
 }
 
 // Puts the path in front; of a long one the end, which tells files apart.
@@ -75,44 +74,42 @@ void name_file(Status& status, const char* path) {
     const std::size_t length = std::strlen(path);
     const char* shown = length > longest ? path + (length - longest) : path;
     while (shown > path && (*shown & 0xC0) == 0x80) ++shown;
-    Status whole = status;
-    std::snprintf(whole.message, sizeof whole.message, "%s%s: %.200s", shown > path ? "..." : "", shown,
-                  status.message);
-    tidy(whole.message);
-    status = whole;
+    char whole[sizeof status.message];
+    std::snprintf(whole, sizeof whole, "%s%s: %.200s", shown > path ? "..." : "", shown, status.message);
+    tidy(whole);
+    std::memcpy(status.message, whole, sizeof whole);
 }
 
 bool first_error(const Finding& finding, void* status) {
     if (code_of(finding.number) == ErrorCode::none) return true;
 #ifdef ACDF_ENVIRONMENT_ONLY
-    *static_cast<Status*>(status) = failure(finding.number, finding.offset, "");
+    fail_at(*static_cast<Status*>(status), finding.number, finding.offset, "");
 #else
-    *static_cast<Status*>(status) = failure(finding.number, finding.offset, finding.detail);
+    fail_at(*static_cast<Status*>(status), finding.number, finding.offset, finding.detail);
 #endif
     return false;
 }
 
-Status take(const AcdfAllocator& allocator, u64 size, AcdfBlock& block) {
+// What follows is false, and `status` says why, where it fails.
+
+bool take(const AcdfAllocator& allocator, u64 size, AcdfBlock& block, Status& status) {
     if (size < SIZE_MAX - ACDF_ALIGNMENT) block = take_block(allocator, static_cast<std::size_t>(size));
-    return block.data ? Status{} : failure(1003, "%llu bytes", static_cast<ull>(size));
+    return block.data || fail(status, 1003, "%llu bytes", static_cast<ull>(size));
 }
 
-Status check_limit(u64 size, const Limits& limits) {
-    if (size <= limits.max_file_bytes) return {};
-    return failure(1004, "%llu bytes, the limit is %llu", static_cast<ull>(size),
-                   static_cast<ull>(limits.max_file_bytes));
+bool is_within(u64 size, const Limits& limits, Status& status) {
+    return size <= limits.max_file_bytes || fail(status, 1004, "%llu bytes, the limit is %llu",
+                                                 static_cast<ull>(size), static_cast<ull>(limits.max_file_bytes));
 }
 
-Status read_path(const char* path, const LoadOptions& options, AcdfBlock& block, u64& size) {
+bool read_path(const char* path, const LoadOptions& options, AcdfBlock& block, u64& size, Status& status) {
     InputFile input;
-    if (const char* wrong = input.open(path)) return failure(1001, "%s", wrong);
-    if (const char* wrong = input.measure(size)) return failure(1002, "%s", wrong);
-    if (Status status = check_limit(size, options.limits); !status.ok()) return status;
-    if (Status status = take(options.allocator, size, block); !status.ok()) return status;
+    if (const char* wrong = input.open(path)) return fail(status, 1001, "%s", wrong);
+    if (const char* wrong = input.measure(size)) return fail(status, 1002, "%s", wrong);
+    if (!is_within(size, options.limits, status) || !take(options.allocator, size, block, status)) return false;
     u64 done = 0;
-    if (const char* wrong = input.read(block.data, size, done)) return failure(1002, "%s", wrong);
-    if (done < size) return failure(1002, "it shrank to %llu bytes while being read", static_cast<ull>(done));
-    return {};
+    if (const char* wrong = input.read(block.data, size, done)) return fail(status, 1002, "%s", wrong);
+    return done == size || fail(status, 1002, "it shrank to %llu bytes while being read", static_cast<ull>(done));
 }
 
 // False where there is no memory.
@@ -153,8 +150,7 @@ void take_parts(const Parts& parts, AcdfFile& file) noexcept {
 }
 
 // Checks the bytes of a file, and makes its view. On failure the caller gives its memory back.
-Status load(const LoadOptions& options, AcdfFile& file) noexcept {
-    Status status;
+bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
     Parts parts;
 #ifndef ACDF_ENVIRONMENT_ONLY
     TreeSurvey survey;
@@ -162,54 +158,52 @@ Status load(const LoadOptions& options, AcdfFile& file) noexcept {
 #endif
     check(file.bytes, file.size, options.limits, first_error, &status, parts, options.allocator);
     file.memory[1] = parts.inflated;
-    if (!status.ok()) return status;
+    if (!status.ok()) return false;
     take_parts(parts, file);
     if (parts.halvings && !make_halved(parts, options.tables, file))
-        return failure(1003, "%llu halvings", ull{parts.halving_count});
+        return fail(status, 1003, "%llu halvings", ull{parts.halving_count});
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (file.kind() != ACDF_KIND_ENVIRONMENT) make_view(parts, options.tables ? &survey : nullptr, file);
 #endif
-    return status;
+    return true;
 }
 
 // Of bytes that the file owns, if `owned` has them.
-Status load(const void* data, std::size_t size, const LoadOptions& options, AcdfBlock owned,
-            AcdfFile*& out) noexcept {
+AcdfFile* load(const void* data, std::size_t size, const LoadOptions& options, AcdfBlock owned,
+               Status& status) noexcept {
     AcdfFile file = {};
     file.bytes = static_cast<const u8*>(data);
     file.size = size;
     file.allocator = options.allocator;
     file.memory[0] = owned;
-    Status status = load(options, file);
-    if (status.ok()) status = take(options.allocator, sizeof file, file.own);
-    if (status.ok()) out = new (file.own.data) AcdfFile(file);
-    else give_memory(file);
-    return status;
+    if (load(options, file, status) && take(options.allocator, sizeof file, file.own, status))
+        return new (file.own.data) AcdfFile(file);
+    give_memory(file);
+    return nullptr;
 }
 
 } // namespace
 
-Status open_path(const char* path, const LoadOptions& options, AcdfFile*& out) noexcept {
+AcdfFile* open_path(const char* path, const LoadOptions& options, Status& status) noexcept {
     AcdfBlock block = {};
     u64 size = 0;
-    out = nullptr;
-    if (!path) return failure(1001, "no path is given");
-    Status status = read_path(path, options, block, size);
-    if (status.ok()) status = load(block.data, static_cast<std::size_t>(size), options, block, out);
+    AcdfFile* file = nullptr;
+    if (!path) return fail(status, 1001, "no path is given"), nullptr;
+    if (read_path(path, options, block, size, status))
+        file = load(block.data, static_cast<std::size_t>(size), options, block, status);
     else give_block(options.allocator, block);
-    if (!status.ok()) name_file(status, path);
-    return status;
+    if (!file) name_file(status, path);
+    return file;
 }
 
-Status open_bytes(const void* data, std::size_t size, const LoadOptions& options, AcdfFile*& out) noexcept {
+AcdfFile* open_bytes(const void* data, std::size_t size, const LoadOptions& options, Status& status) noexcept {
     AcdfBlock copy = {};
-    out = nullptr;
-    if (Status status = check_limit(size, options.limits); !status.ok()) return status;
+    if (!is_within(size, options.limits, status)) return nullptr;
     if (reinterpret_cast<std::uintptr_t>(data) % alignof(AcdfHeader) != 0) {
-        if (Status status = take(options.allocator, size, copy); !status.ok()) return status;
+        if (!take(options.allocator, size, copy, status)) return nullptr;
         data = std::memcpy(copy.data, data, size);
     }
-    return load(data, size, options, copy, out);
+    return load(data, size, options, copy, status);
 }
 
 void close_file(AcdfFile* file) noexcept {
@@ -228,12 +222,16 @@ File& File::operator=(File&& other) noexcept {
 }
 
 Status File::open(const char* path, File& file, const LoadOptions& options) noexcept {
+    Status status;
     file = File();
-    return open_path(path, options, file.opened_);
+    file.opened_ = open_path(path, options, status);
+    return status;
 }
 Status File::from_memory(const void* data, std::size_t size, File& file, const LoadOptions& options) noexcept {
+    Status status;
     file = File();
-    return open_bytes(data, size, options, file.opened_);
+    file.opened_ = open_bytes(data, size, options, status);
+    return status;
 }
 
 AcdfKind File::kind() const noexcept { return opened_->kind(); }

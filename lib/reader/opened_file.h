@@ -37,9 +37,9 @@ namespace acdf {
 struct Parts;
 class TreeSurvey;
 
-/// File::open and File::from_memory; `out` is null on failure.
-Status open_path(const char* path, const LoadOptions& options, AcdfFile*& out) noexcept;
-Status open_bytes(const void* data, std::size_t size, const LoadOptions& options, AcdfFile*& out) noexcept;
+/// File::open and File::from_memory; null on failure. `status` is that of success before.
+AcdfFile* open_path(const char* path, const LoadOptions& options, Status& status) noexcept;
+AcdfFile* open_bytes(const void* data, std::size_t size, const LoadOptions& options, Status& status) noexcept;
 void close_file(AcdfFile* file) noexcept;
 
 #ifndef ACDF_ENVIRONMENT_ONLY

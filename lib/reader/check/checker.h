@@ -79,16 +79,16 @@ struct Payloads {
 inline std::uint64_t round_up(std::uint64_t n, std::uint64_t to) noexcept { return (n + to - 1) / to * to; }
 
 /// DESC. Sets parts.description and parts.axes if its length is right.
-void check_description(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_description(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
 /// META. Sets parts.metadata if it is well-formed.
-void check_metadata(const Payload& payload, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_metadata(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// HALV; needs parts.description. Sets parts.halvings.
 void check_halvings(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// What the kind asks of axes and bins; needs parts.description. Axes 0 and 1 must be those of an environment.
-void check_environment_axes(const Payload& payload, Report& report, const Parts& parts) noexcept;
-void check_environment(const Payload& description, const Payload& bins, Report& report,
-                       const Parts& parts) noexcept;
+ACDF_ONCE void check_environment_axes(const Payload& payload, Report& report, const Parts& parts) noexcept;
+ACDF_ONCE void check_environment(const Payload& description, const Payload& bins, Report& report,
+                                 const Parts& parts) noexcept;
 /// COMP, where there is one; needs parts.description. Sets parts.partner.
-void check_partner(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_partner(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
 
 } // namespace acdf
