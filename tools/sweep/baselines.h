@@ -1,4 +1,4 @@
-// What renderers use without acdf, as rows of a sweep. The first is the baseline of times.
+// What renderers use without acdf, as rows of a sweep. The first is the reference of times.
 #pragma once
 
 #include "build/accuracy/local.h"

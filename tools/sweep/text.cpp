@@ -114,7 +114,7 @@ nlohmann::ordered_json situation_json(const SituationAdvice& s) {
             {"sobol", json_value(s.lit.sobol)},
             {"noise_percent", noise_json(s.lit.mean)},
             {"reference_variance_ratio", interval_json(s.over_reference)},
-            {"best_baseline", s.has_baseline ? nlohmann::ordered_json(s.reference) : nlohmann::ordered_json()},
+            {"best_baseline", s.has_baseline ? nlohmann::ordered_json(s.best_baseline) : nlohmann::ordered_json()},
             {"best_baseline_variance_ratio", interval_json(s.over_best_baseline)}};
 }
 

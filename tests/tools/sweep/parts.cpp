@@ -156,8 +156,8 @@ TEST(SweepAdvice, SaysWhatPicturesHave) {
         "4 KiB is enough: a diffuse surface has 25 % noise with it at 64 samples per pixel, and 24 % with the "
         "full_cdf; no other size or fit tried lowers it by more than 5 %.");
     ASSERT_EQ(advice.situations.size(), std::size_t{kSituations});
-    EXPECT_EQ(advice.situations[open_alone].baseline, 3u);
-    EXPECT_EQ(advice.situations[open_partner].baseline, 4u);
+    EXPECT_EQ(advice.situations[open_alone].best_baseline, 3u);
+    EXPECT_EQ(advice.situations[open_partner].best_baseline, 4u);
     const double cost = (0.5 * (200 + 200 + 20) + 500) / (0.5 * (100 + 100 + 20) + 500);
     EXPECT_NEAR(advice.situations[open_partner].over_best_baseline.value, 0.5 / 2.0 * cost, 1e-9);
     const std::string all = advice.situations[open_alone].sentence + advice.situations[open_partner].sentence;
