@@ -131,8 +131,8 @@ enum class Wrap { clamp, repeat };
 struct TargetOptions {
     Channels channels;
     Domain domain = Domain::source;
-    /// How the renderer looks the map up. A bilinear fit serves nearest lookups, too, with a little more noise: it
-    /// has density wherever a texel or its neighbour has light. A nearest fit is biased under bilinear lookups,
+    /// How the renderer looks the map up. A bilinear fit serves nearest lookups, too, with a little more noise: its
+    /// pdf is positive wherever a texel or its neighbour has light. A nearest fit is biased under bilinear lookups,
     /// which blend light into dark texels.
     AcdfFilter filter = ACDF_FILTER_BILINEAR;
     Wrap wrap = Wrap::clamp; ///< of a bilinear lookup
