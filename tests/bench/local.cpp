@@ -139,7 +139,7 @@ bool run(const char* path) {
     const Questions q(plain);
     std::printf(
         "\nA file of %llu bytes%s, with tables of %llu bytes; full table of %u x %u\n\n| ns a call (of the full "
-        "table's) | full table | walked | with tables | many, no vectors | many, AVX2 | many, AVX-512 "
+        "table's) | full table | no tables | tables | batch, no SIMD | batch, AVX2 | batch, AVX-512 "
         "|\n|---|---|---|---|---|---|---|\n",
         static_cast<unsigned long long>(tables.size()),
         fast.data().fast.grid ? " in the fast shape"
@@ -204,22 +204,20 @@ bool run(const char* path) {
         return [&](const LocalEnvironmentView& view) { return pdf_each(view, q, directions); };
     };
     report("shading point (full table: a sample)", all, at_points(1, nothing), full_sample, nullptr);
-    report("sample at a normal of its own", all, sample_once(q), full_sample, draws);
-    report("one of 16 samples at a point", all, at_points(kShared, draw), full_sample, shared_samples);
-    report("density of a uniform direction at a normal of its own", all, once(q.anywhere), full_anywhere,
-           of(q.anywhere));
-    report("density of a sampled direction at a normal of its own", all, once(q.sampled), full_sampled,
-           of(q.sampled));
-    report("one of 16 densities at a point", all, at_points(kShared, sampled), full_sampled, shared_pdfs);
-    report("shading point, sample, and density of another direction (full table: both)", all, at_points(1, both),
+    report("sample, a normal per call", all, sample_once(q), full_sample, draws);
+    report("sample, 16 per shading point", all, at_points(kShared, draw), full_sample, shared_samples);
+    report("pdf of a uniform direction, a normal per call", all, once(q.anywhere), full_anywhere, of(q.anywhere));
+    report("pdf of a sampled direction, a normal per call", all, once(q.sampled), full_sampled, of(q.sampled));
+    report("pdf, 16 per shading point", all, at_points(kShared, sampled), full_sampled, shared_pdfs);
+    report("shading point, sample, and pdf of another direction (full table: both)", all, at_points(1, both),
            full_both, nullptr);
     const Questions coherent(plain, true);
     report("sample, coherent normals and numbers", all, sample_once(coherent), full_sample_of(coherent),
            samples_of(coherent));
     all.evicted = true;
-    report("sample at a normal of its own, caches evicted", all, sample_once(q), full_sample, draws);
-    report("density of a uniform direction at a normal of its own, caches evicted", all, once(q.anywhere),
-           full_anywhere, of(q.anywhere));
+    report("sample, a normal per call, caches evicted", all, sample_once(q), full_sample, draws);
+    report("pdf of a uniform direction, a normal per call, caches evicted", all, once(q.anywhere), full_anywhere,
+           of(q.anywhere));
     return true;
 }
 

@@ -83,7 +83,7 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
     using Sampler = ProductSampler<AnyLobe>;
     for (const int parts : {1, 8, 16, 32, 64, 96}) {
         const Sampler sampler(light, lobe, ProductOptions{parts, acdf_product_vectors()});
-        out.push_back({name + ", `at`, " + std::to_string(parts) + " parts",
+        out.push_back({name + ", `at`, " + std::to_string(parts) + (parts == 1 ? " sub-region" : " sub-regions"),
                        [=, &all] {
                            for (const ShadingPoint& point_ : all)
                                sink = static_cast<float>(sampler.at(point_.frame, point_.wo).share);
@@ -93,13 +93,13 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
     const Sampler sampler(light, lobe, ProductOptions{64, acdf_product_vectors()});
     std::vector<typename Sampler::Point> points;
     for (const ShadingPoint& point_ : all) points.push_back(sampler.at(point_.frame, point_.wo));
-    out.push_back({name + ", `sample`, 64 parts",
+    out.push_back({name + ", `sample`, 64 sub-regions",
                    [=, &all] {
                        for (std::size_t i = 0; i < kPoints; ++i)
                            for (const auto& u : all[i].u) sink = sampler.sample(points[i], u[0], u[1]).pdf;
                    },
                    double{kPoints * kDraws}});
-    out.push_back({name + ", `sample` of 16 at once, 64 parts",
+    out.push_back({name + ", `sample` of 16 at once, 64 sub-regions",
                    [=, &all] {
                        ProductSample sampled[kDraws];
                        for (std::size_t i = 0; i < kPoints; ++i) {
@@ -108,7 +108,7 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
                        }
                    },
                    double{kPoints * kDraws}});
-    out.push_back({name + ", `sample`, 64 parts, other numbers each turn",
+    out.push_back({name + ", `sample`, 64 sub-regions, other random numbers each turn",
                    [=] {
                        for (const auto& point : points)
                            for (std::size_t k = 0; k < kDraws; ++k) {
@@ -117,7 +117,7 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
                            }
                    },
                    double{kPoints * kDraws}});
-    out.push_back({name + ", `sample` of 16 at once, 64 parts, other numbers each turn",
+    out.push_back({name + ", `sample` of 16 at once, 64 sub-regions, other random numbers each turn",
                    [=] {
                        double u[kDraws][2];
                        ProductSample sampled[kDraws];
@@ -129,7 +129,7 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
                        }
                    },
                    double{kPoints * kDraws}});
-    out.push_back({name + ", `at` of 64 parts and 16 samples there, a sample",
+    out.push_back({name + ", `at` of 64 sub-regions and 16 samples one by one, per sample",
                    [=, &all] {
                        for (const ShadingPoint& point_ : all) {
                            const auto point = sampler.at(point_.frame, point_.wo);
@@ -137,7 +137,7 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
                        }
                    },
                    double{kPoints * kDraws}});
-    out.push_back({name + ", `at` of 64 parts and 16 samples at once, a sample",
+    out.push_back({name + ", `at` of 64 sub-regions and 16 samples at once, per sample",
                    [=, &all] {
                        ProductSample sampled[kDraws];
                        for (const ShadingPoint& point_ : all) {
@@ -155,7 +155,7 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
         (void)lobe.at(wo, views[i]);
         acdf_local_at(&light, all[i].frame.normal, &normals[i]);
     }
-    out.push_back({name + ", a sample of each strategy and the other's density, mean of both",
+    out.push_back({name + ", MIS: a sample of each strategy and the other's pdf, mean of both",
                    [=, &all] {
                        for (std::size_t i = 0; i < kPoints; ++i)
                            for (std::size_t k = 0; k < kDraws; ++k) {

@@ -26,7 +26,7 @@ put=$here/../../docs/make/put_table.sh
     cat "$work/times"
     printf '\n| instructions a call, 128 KiB | sample | pdf |\n|---|---|---|\n'
     for walk in '' walk; do
-        printf '| tables%s | %s | %s |\n' "${walk:+ left out}" "$(instructions bench_brdf sample "$work/128" $walk)" \
+        printf '| %s | %s | %s |\n' "${walk:+no }tables" "$(instructions bench_brdf sample "$work/128" $walk)" \
             "$(instructions bench_brdf pdf "$work/128" $walk)"
     done
 } | "$put" brdf

@@ -222,17 +222,17 @@ bool run(const std::vector<std::uint32_t>& sides) {
     for (const std::uint32_t side : sides) shape += (shape.empty() ? "" : " x ") + std::to_string(side);
     std::printf("\n%s numbers; a file of %zu bytes with tables of %llu, %.4g relative variance; full table "
                 "%zu\n\n| ns a call (of the full "
-                "table's) | full table | alias table | the file | walked |\n|---|---|---|---|---|\n",
+                "table's) | full table | alias table | file | no tables |\n|---|---|---|---|---|\n",
                 shape.c_str(), made.bytes.size(), static_cast<unsigned long long>(file.table_bytes()),
                 made.accuracy.relative_variance, 2 * 4 * values.size());
     for (const bool evicted : {false, true}) {
-        report(evicted ? "sample, caches evicted" : "draw",
+        report(evicted ? "sample, caches evicted" : "sample",
                {draws(full, u), draws(alias, u), ours_samples(view), ours_samples(walk)}, evicted);
-        report(evicted ? "density of uniform points, caches evicted" : "density of uniform points",
+        report(evicted ? "pdf of uniform points, caches evicted" : "pdf of uniform points",
                {densities(full, anywhere), densities(alias, anywhere), ours(view, anywhere), ours(walk, anywhere)},
                evicted);
     }
-    report("density of sampled points",
+    report("pdf of sampled points",
            {densities(full, sampled), densities(alias, sampled), ours(view, sampled), ours(walk, sampled)}, false);
     return true;
 }

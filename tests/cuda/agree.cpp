@@ -83,7 +83,7 @@ bool of_file(const char* path, std::size_t count) {
         const DeviceFile device(file);
         std::string name = path;
         name.erase(0, name.find_last_of('/') + 1);
-        name += tables ? ", tables" : ", walked";
+        name += tables ? ", tables" : ", no tables";
         switch (file.kind()) {
         case ACDF_KIND_ENVIRONMENT:
             exact &= compare(name, OfEnvironment{device(file.environment())}, {file.environment()}, file, count);
@@ -109,7 +109,7 @@ bool of_product(int parts, const char* light_path, const char* surface_path, std
         std::exit(1);
     }
     const DeviceFile light_there(light), surface_there(surface);
-    return compare("product, " + std::to_string(parts) + " parts",
+    return compare("product, " + std::to_string(parts) + " sub-regions",
                    OfProduct{light_there(light.local()), surface_there(surface.brdf()), parts},
                    {light.local(), surface.brdf(), parts}, light, count);
 }
@@ -131,8 +131,8 @@ int main(int argc, char** argv) {
     const std::size_t count = std::strtoul(argv[at++], nullptr, 10);
     bool same = true;
     std::printf(
-        "| file | samples | of other directions | beyond 1e-5 | of other densities | own density is another "
-        "(processor) | by | directions of other densities | by |\n|---|---|---|---|---|---|---|---|---|\n");
+        "| file | samples | other direction | beyond 1e-5 | other pdf | pdf of the sampled direction differs "
+        "(processor) | by | directions with another pdf | by |\n|---|---|---|---|---|---|---|---|---|\n");
     if (std::strcmp(argv[at], "--product") == 0 && argc >= at + 4)
         same = of_product(std::atoi(argv[at + 1]), argv[at + 2], argv[at + 3], count);
     else

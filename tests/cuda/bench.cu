@@ -160,7 +160,7 @@ void environments(std::uint32_t columns, int count, char** paths, const Question
     if (columns > 0) {
         baselines.emplace(acdf_bench::sky(columns));
         sampled = at_sampled(baselines->alias(), q.any(), place);
-        rows.push_back(of_baseline("nothing but what is asked", Nothing{}, q, sampled));
+        rows.push_back(of_baseline("reading and summing only", Nothing{}, q, sampled));
         rows.push_back(of_baseline("full table", baselines->full(), q, sampled));
         rows.push_back(of_baseline("alias table", baselines->alias(), q, sampled));
         Row warp{"hierarchical warp",
@@ -181,13 +181,13 @@ void environments(std::uint32_t columns, int count, char** paths, const Question
         for (const bool tables : {true, false}) {
             const Opened opened(paths[i], tables);
             const acdf::EnvironmentView view = (*opened.there)(opened.file.environment());
-            rows.push_back({name_of(paths[i]) + (tables ? "" : ", walked"),
+            rows.push_back({name_of(paths[i]) + (tables ? "" : ", no tables"),
                             {time_sample(view, q.any()), time_sample(view, q.coherent()), time_pdf(view, q.any()),
                              time_pdf(view, sampled)}});
         }
     }
     print(("ns a call, " + std::to_string(columns) + " columns").c_str(),
-          "sample | sample, coherent numbers | density of uniform directions | density of sampled directions",
+          "sample | sample, coherent numbers | pdf of uniform directions | pdf of sampled directions",
           rows);
 }
 
@@ -208,7 +208,7 @@ void others(int count, char** paths, const Questions& q) {
         }
         for (const bool tables : {true, false}) {
             const Opened opened(paths[i], tables);
-            const std::string name = name_of(paths[i]) + (tables ? "" : ", walked");
+            const std::string name = name_of(paths[i]) + (tables ? "" : ", no tables");
             if (opened.file.kind() == ACDF_KIND_LOCAL) {
                 const acdf::LocalEnvironmentView view = (*opened.there)(opened.file.local());
                 local.push_back({name,
@@ -223,9 +223,9 @@ void others(int count, char** paths, const Questions& q) {
     }
     if (!local.empty())
         print("ns a call, local",
-              "point and sample | 32 threads at a normal | one of 16 samples at a point | point and density",
+              "point and sample | 32 threads at a normal | sample, 16 per shading point | point and pdf",
               local);
-    if (!brdf.empty()) print("ns a call, BRDF", "sample | 32 threads at a view | density", brdf);
+    if (!brdf.empty()) print("ns a call, BRDF", "sample | 32 threads at a view | pdf", brdf);
 }
 
 } // namespace

@@ -46,7 +46,7 @@ std::string sentence_of(const Sweep& sweep, const SituationAdvice& s) {
     if (!s.has_baseline) return text + ".";
     const bool even = s.over_best_baseline.low < 1.0 && s.over_best_baseline.high > 1.0;
     return text + ", " + noise_ratio_text(s.over_best_baseline.value) + " the best baseline, the " +
-           sweep.rows[s.reference].label + (even ? " (too close to call)." : ".");
+           sweep.rows[s.best_baseline].label + (even ? " (too close to call)." : ".");
 }
 
 } // namespace
@@ -78,7 +78,7 @@ std::vector<SituationAdvice> situations_of(const Sweep& sweep, const SweepRow& b
             const Interval ratio = variance_ratio(sweep, sweep.rows[r], best, one.situation);
             if (!ratio.known() || std::isinf(ratio.value)) continue;
             if (one.has_baseline && ratio.value >= one.over_best_baseline.value) continue;
-            one.baseline = r;
+            one.best_baseline = r;
             one.has_baseline = true;
             one.over_best_baseline = ratio;
         }

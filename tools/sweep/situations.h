@@ -18,11 +18,12 @@ std::string noise_ratio_text(double variance_ratio);
 
 struct SituationAdvice {
     Situation situation = open_alone;
-    Lit lit;                  ///< of the recommended file
-    std::size_t baseline = 0; ///< the best after the same time, or after the same samples where nothing was timed
+    Lit lit; ///< of the recommended file
+    std::size_t best_baseline =
+        0; ///< the best after the same time, or after the same samples where nothing was timed
     bool has_baseline = false;
-    Interval over_reference;     ///< variance of the baseline over that of the file, after the same time
-    Interval over_best_baseline; ///< the same of `baseline`
+    Interval over_reference;     ///< variance of the reference over that of the file, after the same time
+    Interval over_best_baseline; ///< the same of `best_baseline`
     std::string sentence;
 };
 

@@ -31,7 +31,9 @@ constexpr SweepColumn columns[] = {
     {"fit", nullptr, false, [](S, R r) -> SweepValue { return r.fit; }},
     {"label", "what", false, [](S, R r) -> SweepValue { return r.label; }},
     {"options", "options", false, [](S, R r) -> SweepValue { return r.options; }},
-    {"bytes", "size", false, [](S, R r) -> SweepValue { return r.bytes; }},
+    {"bytes", "memory", false, [](S, R r) -> SweepValue { return r.bytes; }},
+    {"file_bytes", "file", false,
+     [](S, R r) -> SweepValue { return r.ours() ? SweepValue(r.file_bytes) : SweepValue(kUnknown); }},
     {"cells", "cells", false,
      [](S, R r) -> SweepValue { return r.cells > 0 ? SweepValue(r.cells) : SweepValue(kUnknown); }},
     {"relative_variance", "relative variance", false, [](S, R r) -> SweepValue { return r.relative_variance; }},
@@ -114,7 +116,7 @@ nlohmann::ordered_json situation_json(const SituationAdvice& s) {
             {"sobol", json_value(s.lit.sobol)},
             {"noise_percent", noise_json(s.lit.mean)},
             {"reference_variance_ratio", interval_json(s.over_reference)},
-            {"best_baseline", s.has_baseline ? nlohmann::ordered_json(s.reference) : nlohmann::ordered_json()},
+            {"best_baseline", s.has_baseline ? nlohmann::ordered_json(s.best_baseline) : nlohmann::ordered_json()},
             {"best_baseline_variance_ratio", interval_json(s.over_best_baseline)}};
 }
 
