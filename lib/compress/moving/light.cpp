@@ -1,0 +1,62 @@
+#include "compress/moving/light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace acdf::compress {
+namespace {
+
+constexpr float kLargest = std::numeric_limits<float>::max();
+
+std::uint8_t kind_of(float v) { return std::isnan(v) ? 1 : std::isinf(v) ? 2 : v < 0.0f ? 3 : 0; }
+
+/// How many values are no radiance.
+int count_bad(const float* values, std::size_t count) {
+    int bad = 0;
+    for (std::size_t i = 0; i < count; ++i) bad += !(values[i] >= 0.0f && values[i] <= kLargest);
+    return bad;
+}
+
+/// Each texel counts once, as the first kind that it has.
+void mend(float* rgb, std::size_t count, std::uint8_t* bad) {
+    for (std::size_t i = 0; i < count; ++i) {
+        std::uint8_t first = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            float& value = rgb[3 * i + k];
+            const std::uint8_t kind = kind_of(value);
+            if (kind == 0) continue;
+            first = first == 0 ? kind : std::min(first, kind);
+            value = 0.0f;
+        }
+        bad[i] = first;
+    }
+}
+
+} // namespace
+
+bool take_light(float* rgb, std::uint32_t x, std::uint32_t r, std::size_t count, const TargetOptions& options,
+                MovingSums& sums, std::uint8_t* bad) {
+    const bool any = count_bad(rgb, 3 * count) > 0;
+    if (any) mend(rgb, count, bad);
+    float* out = sums.row(0, r) + x;
+    if (options.channels == ACDF_CHANNELS_SEPARATE) {
+        float *green = sums.row(1, r) + x, *blue = sums.row(2, r) + x;
+        for (std::size_t i = 0; i < count; ++i) {
+            out[i] = rgb[3 * i];
+            green[i] = rgb[3 * i + 1];
+            blue[i] = rgb[3 * i + 2];
+        }
+    } else if (options.channels == ACDF_CHANNELS_LARGEST) {
+        for (std::size_t i = 0; i < count; ++i)
+            out[i] = std::max(std::max(rgb[3 * i], rgb[3 * i + 1]), rgb[3 * i + 2]);
+    } else {
+        const auto wr = static_cast<float>(options.weights.r), wg = static_cast<float>(options.weights.g),
+                   wb = static_cast<float>(options.weights.b);
+        for (std::size_t i = 0; i < count; ++i)
+            out[i] = wr * rgb[3 * i] + wg * rgb[3 * i + 1] + wb * rgb[3 * i + 2];
+    }
+    return any;
+}
+
+} // namespace acdf::compress
