@@ -65,6 +65,8 @@ public:
     /// where quality is best.
     Status update(const Pixels& pixels, const Region& region, const Control& control = {}) noexcept;
 
+    /// Whether make() has filled it.
+    bool ready() const noexcept { return data_ != nullptr; }
     /// Whether there is no file yet: then nothing below may be asked.
     bool empty() const noexcept;
     /// The view of the last frame. It stays valid, as do the file's bytes, while the next frame is made and until

@@ -153,8 +153,12 @@ void FastRebuild::read_row(const Pixels& pixels, const Region& region, std::uint
     if (bad_of_row_[y]) std::fill_n(bad + region.x, region.width, std::uint8_t{0});
     for (std::uint32_t x = region.x, end = region.x + region.width; x < end;) {
         const auto count = std::min<std::uint32_t>(end - x, compress::kTexelsAtOnce);
-        read_texels(pixels, x, y, count, rgb);
-        if (compress::take_light(rgb, x, y, count, target_, sums_, bad + x)) bad_of_row_[y] = 1;
+        const float* texels = packed_texels(pixels, x, y);
+        if (!texels) {
+            read_texels(pixels, x, y, count, rgb);
+            texels = rgb;
+        }
+        if (compress::take_light(texels, x, y, count, target_, sums_, bad + x)) bad_of_row_[y] = 1;
         x += count;
     }
     if (bad_of_row_[y]) bad_of_row_[y] = std::any_of(bad, bad + width, [](std::uint8_t kind) { return kind != 0; });

@@ -102,6 +102,17 @@ void read_texels(const Pixels& pixels, std::uint32_t x, std::uint32_t y, std::ui
     read(first, strides, pixels.channels, count, rgb);
 }
 
+const float* packed_texels(const Pixels& pixels, std::uint32_t x, std::uint32_t y) {
+    const Strides strides = strides_of(pixels);
+    if (pixels.number != Number::float32 || pixels.channels == 1 || strides.channel != sizeof(float) ||
+        strides.pixel != 3 * sizeof(float))
+        return nullptr;
+    const auto* first = static_cast<const unsigned char*>(pixels.data) + std::ptrdiff_t{y} * strides.row +
+                        std::ptrdiff_t{x} * strides.pixel;
+    if (reinterpret_cast<std::uintptr_t>(first) % alignof(float) != 0) return nullptr;
+    return reinterpret_cast<const float*>(first);
+}
+
 void read_rows(const Pixels& pixels, std::uint32_t first, std::uint32_t count, float* rgb) {
     compress::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t r) {
         read_texels(pixels, 0, first + r, pixels.width, rgb + std::size_t{3} * r * pixels.width);

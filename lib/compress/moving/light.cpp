@@ -19,15 +19,14 @@ int count_bad(const float* values, std::size_t count) {
 }
 
 /// Each texel counts once, as the first kind that it has.
-void mend(float* rgb, std::size_t count, std::uint8_t* bad) {
+void mend(const float* rgb, std::size_t count, float* mended, std::uint8_t* bad) {
     for (std::size_t i = 0; i < count; ++i) {
         std::uint8_t first = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            float& value = rgb[3 * i + k];
+            const float value = rgb[3 * i + k];
             const std::uint8_t kind = kind_of(value);
-            if (kind == 0) continue;
-            first = first == 0 ? kind : std::min(first, kind);
-            value = 0.0f;
+            mended[3 * i + k] = kind == 0 ? value : 0.0f;
+            if (kind != 0) first = first == 0 ? kind : std::min(first, kind);
         }
         bad[i] = first;
     }
@@ -35,10 +34,14 @@ void mend(float* rgb, std::size_t count, std::uint8_t* bad) {
 
 } // namespace
 
-bool take_light(float* rgb, std::uint32_t x, std::uint32_t r, std::size_t count, const TargetOptions& options,
+bool take_light(const float* rgb, std::uint32_t x, std::uint32_t r, std::size_t count, const TargetOptions& options,
                 MovingSums& sums, std::uint8_t* bad) {
     const bool any = count_bad(rgb, 3 * count) > 0;
-    if (any) mend(rgb, count, bad);
+    float mended[3 * kTexelsAtOnce];
+    if (any) {
+        mend(rgb, count, mended, bad);
+        rgb = mended;
+    }
     float* out = sums.row(0, r) + x;
     if (options.channels == ACDF_CHANNELS_SEPARATE) {
         float *green = sums.row(1, r) + x, *blue = sums.row(2, r) + x;
