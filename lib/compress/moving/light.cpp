@@ -1,25 +1,18 @@
 #include "compress/moving/light.h"
 
+#include "compress/moving/kernels.h"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace acdf::compress {
 namespace {
 
-constexpr float kLargest = std::numeric_limits<float>::max();
-
 std::uint8_t kind_of(float v) { return std::isnan(v) ? 1 : std::isinf(v) ? 2 : v < 0.0f ? 3 : 0; }
 
-/// How many values are no radiance.
-int count_bad(const float* values, std::size_t count) {
-    int bad = 0;
-    for (std::size_t i = 0; i < count; ++i) bad += !(values[i] >= 0.0f && values[i] <= kLargest);
-    return bad;
-}
-
-/// Each texel counts once, as the first kind that it has.
-void mend(const float* rgb, std::size_t count, float* mended, std::uint8_t* bad) {
+/// Each texel counts once, as the first kind that it has; false where all are fine.
+bool mend(const float* rgb, std::size_t count, float* mended, std::uint8_t* bad) {
+    bool any = false;
     for (std::size_t i = 0; i < count; ++i) {
         std::uint8_t first = 0;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -29,19 +22,18 @@ void mend(const float* rgb, std::size_t count, float* mended, std::uint8_t* bad)
             if (kind != 0) first = first == 0 ? kind : std::min(first, kind);
         }
         bad[i] = first;
+        any = any || first != 0;
     }
+    return any;
 }
 
 } // namespace
 
 bool take_light(const float* rgb, std::uint32_t x, std::uint32_t r, std::size_t count, const TargetOptions& options,
                 MovingSums& sums, std::uint8_t* bad) {
-    const bool any = count_bad(rgb, 3 * count) > 0;
     float mended[3 * kTexelsAtOnce];
-    if (any) {
-        mend(rgb, count, mended, bad);
-        rgb = mended;
-    }
+    const bool any = may_be_bad(rgb, 3 * count) && mend(rgb, count, mended, bad);
+    if (any) rgb = mended;
     float* out = sums.row(0, r) + x;
     if (options.channels == ACDF_CHANNELS_SEPARATE) {
         float *green = sums.row(1, r) + x, *blue = sums.row(2, r) + x;
@@ -54,10 +46,9 @@ bool take_light(const float* rgb, std::uint32_t x, std::uint32_t r, std::size_t 
         for (std::size_t i = 0; i < count; ++i)
             out[i] = std::max(std::max(rgb[3 * i], rgb[3 * i + 1]), rgb[3 * i + 2]);
     } else {
-        const auto wr = static_cast<float>(options.weights.r), wg = static_cast<float>(options.weights.g),
-                   wb = static_cast<float>(options.weights.b);
-        for (std::size_t i = 0; i < count; ++i)
-            out[i] = wr * rgb[3 * i] + wg * rgb[3 * i + 1] + wb * rgb[3 * i + 2];
+        const float w[3] = {static_cast<float>(options.weights.r), static_cast<float>(options.weights.g),
+                            static_cast<float>(options.weights.b)};
+        weigh_texels(rgb, count, w, out);
     }
     return any;
 }

@@ -1,22 +1,21 @@
 #include "compress/moving/sums.h"
 
+#include "compress/moving/kernels.h"
 #include "compress/row_nodes.h"
 #include "compress/sum.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <limits>
 
 namespace acdf::compress {
 namespace {
 
-constexpr float kLeast = std::numeric_limits<float>::min();
 constexpr std::size_t kLine = 16; // floats of a line of the cache
 /// Texels of maps whose tables have all levels. Of larger ones, which would not stay in the cache, what is smaller
 /// than two texels by two is added when it is asked for.
 constexpr std::size_t kWhole = std::size_t{1} << 20;
-constexpr std::uint32_t kBlocks = 64; // that rows are divided into, each of which is added up by one thread
+constexpr std::uint32_t kTogether = 512; // columns whose squares are made before those of the next
+constexpr std::uint32_t kBlocks = 64;    // that rows are divided into, each of which is added up by one thread
 
 std::size_t lines(std::size_t floats) { return (floats + kLine - 1) / kLine * kLine; }
 
@@ -29,57 +28,13 @@ float unit_for(float largest) {
     return std::ldexp(1.0f, std::clamp(31 - step, -126, 126));
 }
 
-/// Sum and maximum of values that are not negative, in lanes.
-struct Stretch {
-    double sum = 0.0;
-    float largest = 0.0f;
-};
-Stretch stretch_of(const float* values, std::size_t count) {
-    constexpr std::size_t kTogether = 256;
-    Stretch out;
-    float peak[kLine] = {};
-    std::size_t i = 0;
-    while (i + kLine <= count) {
-        float sum[kLine] = {};
-        const std::size_t end = std::min(i + kTogether, count / kLine * kLine);
-        for (; i < end; i += kLine)
-            for (std::size_t k = 0; k < kLine; ++k) {
-                sum[k] += values[i + k];
-                peak[k] = values[i + k] > peak[k] ? values[i + k] : peak[k];
-            }
-        for (const float s : sum) out.sum += double{s};
-    }
-    for (; i < count; ++i) {
-        out.sum += double{values[i]};
-        out.largest = std::max(out.largest, values[i]);
-    }
-    for (const float p : peak) out.largest = std::max(out.largest, p);
-    return out;
-}
-
-void add_up(const float* a, const float* b, std::size_t count, float* out) {
-    for (std::size_t i = 0; i < count; ++i) out[i] = a[i] + b[i];
-}
-
-/// Numbers 2^k to 1 of a heap whose numbers from 2^k on are there.
-void add_pairs(float* heap, std::uint32_t leaves) {
-    for (std::uint32_t count = leaves / 2; count > 0; count /= 2) {
-        const float* below = heap + 2 * count;
-        float* out = heap + count;
-        for (std::uint32_t i = 0; i < count; ++i) out[i] = below[2 * i] + below[2 * i + 1];
-    }
-}
-
 } // namespace
 
-/// A row as bilinear lookups see it. Within a texel the row is linear from the middle c to both sides, so that the
-/// mean over the texel of the product of two rows is the scalar product of three numbers of each. With s the mean
-/// of both neighbours and d half their difference: ((s + 2c)(s' + 2c') + 3cc' + dd') / 12.
 struct MovingSums::RowForm {
     std::int64_t row = -2;
-    std::vector<float> even, middle, odd;
-    std::vector<float> square; ///< of the row itself
-    std::vector<float> lit;    ///< the largest of a texel and its neighbours: positive where there is any light
+    std::vector<float> even, middle, odd, square, lit;
+
+    RowArrays arrays() { return {even.data(), middle.data(), odd.data(), square.data(), lit.data()}; }
 };
 
 struct MovingSums::Scratch {
@@ -237,15 +192,13 @@ void MovingSums::make(const Loop& loop, std::uint32_t first, std::uint32_t last)
         scratch.squares.resize(square_pitch_);
         scratch.forms.resize(shape_.bilinear ? 3 * shape_.planes : 0);
         for (RowForm& form : scratch.forms)
-            for (auto* of : {&form.even, &form.middle, &form.odd, &form.square, &form.lit})
-                of->resize(square_pitch_);
+            for (auto* of : {&form.even, &form.middle, &form.odd, &form.square, &form.lit}) of->resize(kTogether);
     }
-    for (auto& scratch : scratch_)
-        for (RowForm& form : scratch->forms) form.row = -2;
     const std::uint32_t kept = rows_.end() / 2, blocks = std::min(kBlocks, kept), of_block = kept / blocks;
     loop.run(blocks, 1, [&](std::size_t begin, std::size_t end, std::size_t slot) {
         for (std::size_t block = begin; block < end; ++block) {
             const auto low = static_cast<std::uint32_t>(block) * of_block;
+            square_rows(low, low + of_block, *scratch_[slot]);
             for (std::uint32_t i = low; i < low + of_block; ++i)
                 if (dirty_[i]) make_kept_row(i, *scratch_[slot]);
             for (std::uint32_t count = of_block / 2, n = (kept + low) / 2; count > 0; count /= 2, n /= 2)
@@ -263,23 +216,22 @@ void MovingSums::add_rows(std::uint32_t n) {
     while (first < kept) first *= 2, last *= 2;
     if (std::find(dirty_.begin() + first - kept, dirty_.begin() + last - kept, 1) == dirty_.begin() + last - kept)
         return;
-    add_up(table(2 * n), table(2 * n + 1), table_end_[1], table_.get() + n * stride_);
+    add_rows_of(table(2 * n), table(2 * n + 1), table_end_[1], table_.get() + n * stride_);
 }
 
 // ---- squares ----
 
 void MovingSums::make_kept_row(std::uint32_t i, Scratch& scratch) {
     const std::uint32_t first = rows_.border(i), last = rows_.border(i + 1), n = rows_.end() / 2 + i;
-    for (std::uint32_t r = first; r < last; ++r) square_row(r, scratch);
     float* sums = table_.get() + n * stride_;
     const float *upper = squares_.get() + first * square_pitch_, *lower = upper + square_pitch_;
     if (last - first == 1) return add_columns(upper, sums);
     if (whole_) {
         add_columns(upper, sums + n * stride_);
         add_columns(lower, sums + (n + 1) * stride_);
-        return add_up(sums + n * stride_, sums + (n + 1) * stride_, table_end_[1], sums);
+        return add_rows_of(sums + n * stride_, sums + (n + 1) * stride_, table_end_[1], sums);
     }
-    add_up(upper, lower, shape_.columns, scratch.squares.data());
+    add_rows_of(upper, lower, shape_.columns, scratch.squares.data());
     add_columns(scratch.squares.data(), sums);
 }
 
@@ -287,7 +239,7 @@ void MovingSums::make_kept_row(std::uint32_t i, Scratch& scratch) {
 void MovingSums::add_columns(const float* squares, float* sums) {
     const std::uint32_t kept = columns_.end() / 2;
     if (2 * kept == shape_.columns) {
-        for (std::uint32_t k = 0; k < kept; ++k) sums[kept + k] = squares[2 * k] + squares[2 * k + 1];
+        halve_row(squares, kept, sums + kept);
         if (whole_) std::copy_n(squares, shape_.columns, sums + 2 * kept);
     } else
         for (std::uint32_t k = 0; k < kept; ++k) {
@@ -301,71 +253,36 @@ void MovingSums::add_columns(const float* squares, float* sums) {
     add_pairs(sums, kept);
 }
 
-void MovingSums::square_row(std::uint32_t r, Scratch& scratch) {
-    float* out = squares_.get() + r * square_pitch_;
-    if (shape_.bilinear) bilinear_squares(r, scratch, out);
-    else nearest_squares(r, out);
-}
-
-void MovingSums::nearest_squares(std::uint32_t r, float* out) {
-    const auto measure = static_cast<float>(row_measure_[r] * column_measure_[0]);
-    const float unit = unit_;
-    std::fill_n(out, shape_.columns, 0.0f);
-    for (std::size_t plane = 0; plane < shape_.planes; ++plane) {
-        const float* values = row(plane, r);
-        for (std::size_t c = 0; c < shape_.columns; ++c) {
-            const float scaled = values[c] * unit, square = out[c] + scaled * scaled * measure;
-            const float least = values[c] > 0.0f ? kLeast : 0.0f;
-            out[c] = square > least ? square : least;
-        }
+/// Of ranges [low, high) of rows. A stretch of columns after the other: what rows share stays in the nearest cache.
+void MovingSums::square_rows(std::uint32_t low, std::uint32_t high, Scratch& scratch) {
+    for (std::uint32_t begin = 0; begin < shape_.columns; begin += kTogether) {
+        const Columns columns{begin, std::min(kTogether, shape_.columns - begin)};
+        for (RowForm& form : scratch.forms) form.row = -2;
+        for (std::uint32_t i = low; i < high; ++i)
+            for (std::uint32_t r = rows_.border(i); dirty_[i] && r < rows_.border(i + 1); ++r)
+                square_row(r, columns, scratch);
     }
 }
 
-const MovingSums::RowForm& MovingSums::form_of(std::size_t plane, std::int64_t r, Scratch& scratch) {
+void MovingSums::square_row(std::uint32_t r, Columns columns, Scratch& scratch) {
+    float* out = squares_.get() + r * square_pitch_ + columns.begin;
+    std::fill_n(out, columns.count, 0.0f);
+    for (std::size_t plane = 0; plane < shape_.planes; ++plane)
+        if (shape_.bilinear) {
+            const std::int64_t row = r;
+            add_bilinear_squares(form_of(plane, row - 1, columns, scratch), form_of(plane, row, columns, scratch),
+                                 form_of(plane, row + 1, columns, scratch), square_shares_[r].data(), columns.count,
+                                 out);
+        } else
+            add_squares(row(plane, r) + columns.begin, columns.count, unit_,
+                        static_cast<float>(row_measure_[r] * column_measure_[0]), out);
+}
+
+RowArrays MovingSums::form_of(std::size_t plane, std::int64_t r, Columns columns, Scratch& scratch) {
     RowForm& form = scratch.forms[3 * plane + static_cast<std::size_t>((r + 3) % 3)];
-    if (form.row == r) return form;
+    if (form.row != r) form_row(light_at(plane, r) + columns.begin, columns.count, unit_, form.arrays());
     form.row = r;
-    const float *values = light_at(plane, r), unit = unit_;
-    float *even = form.even.data(), *middle = form.middle.data(), *odd = form.odd.data(),
-          *square = form.square.data(), *lit = form.lit.data();
-    for (std::size_t c = 0; c < shape_.columns; ++c) {
-        const float before = values[c - 1], own = values[c], behind = values[c + 1];
-        const float left = before * unit, centre = own * unit, right = behind * unit;
-        const float e = 0.5f * (left + right) + 2.0f * centre, m = 1.7320508f * centre, o = 0.5f * (right - left);
-        even[c] = e;
-        middle[c] = m;
-        odd[c] = o;
-        square[c] = e * e + m * m + o * o;
-        const float larger = before > behind ? before : behind;
-        lit[c] = own > larger ? own : larger;
-    }
-    return form;
-}
-
-void MovingSums::bilinear_squares(std::uint32_t r, Scratch& scratch, float* out) {
-    const std::array<float, 5> share = square_shares_[r];
-    for (std::size_t plane = 0; plane < shape_.planes; ++plane) {
-        const RowForm& above = form_of(plane, std::int64_t{r} - 1, scratch);
-        const RowForm& own = form_of(plane, r, scratch);
-        const RowForm& below = form_of(plane, std::int64_t{r} + 1, scratch);
-        const float *ae = above.even.data(), *am = above.middle.data(), *ao = above.odd.data(),
-                    *as = above.square.data(), *al = above.lit.data();
-        const float *oe = own.even.data(), *om = own.middle.data(), *oo = own.odd.data(), *os = own.square.data(),
-                    *ol = own.lit.data();
-        const float *be = below.even.data(), *bm = below.middle.data(), *bo = below.odd.data(),
-                    *bs = below.square.data(), *bl = below.lit.data();
-        const bool first = plane == 0;
-        for (std::size_t c = 0; c < shape_.columns; ++c) {
-            const float with_above = oe[c] * ae[c] + om[c] * am[c] + oo[c] * ao[c];
-            const float with_below = oe[c] * be[c] + om[c] * bm[c] + oo[c] * bo[c];
-            const float square = share[0] * as[c] + share[1] * with_above + share[2] * os[c] +
-                                 share[3] * with_below + share[4] * bs[c] + (first ? 0.0f : out[c]);
-            float lit = al[c] > bl[c] ? al[c] : bl[c];
-            lit = ol[c] > lit ? ol[c] : lit;
-            const float least = lit > 0.0f ? kLeast : 0.0f;
-            out[c] = square > least ? square : least;
-        }
-    }
+    return form.arrays();
 }
 
 float MovingSums::fine_sum(MovingBox box) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compress/moving/axis.h"
+#include "compress/moving/kernels.h"
 #include "compress/moving/loop.h"
 #include "compress/target.h"
 
@@ -75,6 +76,9 @@ public:
 private:
     struct RowForm;
     struct Scratch;
+    struct Columns {
+        std::uint32_t begin, count;
+    };
     using Floats = std::unique_ptr<float[]>;
 
     float* light_at(std::size_t plane, std::int64_t r) {
@@ -89,10 +93,9 @@ private:
     void mark_depending(std::uint32_t first, std::uint32_t last);
     void make_kept_row(std::uint32_t i, Scratch& scratch);
     void add_columns(const float* squares, float* sums);
-    void square_row(std::uint32_t r, Scratch& scratch);
-    void nearest_squares(std::uint32_t r, float* out);
-    void bilinear_squares(std::uint32_t r, Scratch& scratch, float* out);
-    const RowForm& form_of(std::size_t plane, std::int64_t r, Scratch& scratch);
+    void square_rows(std::uint32_t low, std::uint32_t high, Scratch& scratch);
+    void square_row(std::uint32_t r, Columns columns, Scratch& scratch);
+    RowArrays form_of(std::size_t plane, std::int64_t r, Columns columns, Scratch& scratch);
     void add_rows(std::uint32_t n);
     float fine_sum(MovingBox box) const;
 
