@@ -23,7 +23,7 @@ std::vector<std::pair<double, double>> random_numbers() {
     return numbers;
 }
 
-/// For each of these normals, of any length, a line `nx ny nz  u0 u1  x y z  pdf`; pdf 0 where nothing is drawn.
+/// For each of these normals, of any length, a line `nx ny nz  u0 u1  x y z  pdf`; pdf 0 where nothing is sampled.
 constexpr float kNormals[][3] = {{0, 0, 1},  {1, 0, 0},    {-1, -0.001f, 0.5f}, {0.3f, -0.7f, -0.2f},
                                  {-2, 1, 1}, {0, 0.5f, -5}};
 
@@ -45,7 +45,7 @@ std::string local_samples(const acdf::LocalEnvironmentView& view) {
 constexpr float kPositions[][3] = {{0, 1, 0},       {-1, 1, 1.5f},     {1.5f, 1, 1.5f},
                                    {0.2f, 1, 0.6f}, {0.6f, 2, 0.375f}, {5, 1, 0}};
 
-std::string place_samples(const acdf::LocalEnvironmentView& view) {
+std::string visibility_samples(const acdf::LocalEnvironmentView& view) {
     std::string text;
     for (const auto& x : kPositions)
         for (const auto& n : kNormals)
@@ -87,7 +87,7 @@ std::string golden_samples(const std::string& name, const std::vector<std::uint8
     walked.tables = false;
     const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, walked);
     if (!status.ok()) throw std::runtime_error(name + ": " + status.message);
-    if (file.kind() == ACDF_KIND_LOCAL && file.local().has_places()) return place_samples(file.local());
+    if (file.kind() == ACDF_KIND_LOCAL && file.local().has_visibility()) return visibility_samples(file.local());
     if (file.kind() == ACDF_KIND_LOCAL) return local_samples(file.local());
     if (file.kind() == ACDF_KIND_BRDF) return brdf_samples(file.brdf());
     std::string text;

@@ -1,4 +1,4 @@
-// What is drawn from a golden file, as the text that is frozen beside it.
+// What is sampled from a golden file, as the text that is frozen beside it.
 #pragma once
 
 #include <cstdint>

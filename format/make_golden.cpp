@@ -3,13 +3,13 @@
 //   make_golden OUTDIR
 //
 // The files in tests/golden/ were made by it and are frozen with each release: a reader of any later version
-// must draw the same samples from them, bit for bit. (One of them, `untilted`, has the curves that the variance fit
-// of environments once made. They stay legal, and nothing makes them any more.) A line of the text is
+// must sample the same samples from them, bit for bit. (One of them, `untilted`, has the curves that the variance
+// fit of environments once made. They stay legal, and nothing makes them any more.) A line of the text is
 //
 //   u0 u1  x y z  pdf
 //
-// in hexadecimal floating point (C99 %a), of a local environment with the normal before it (where it has places
-// with position and normal), of a BRDF with wo. None of the files is symmetric, so that a mirrored, turned or
+// in hexadecimal floating point (C99 %a), of a local environment with the normal before it (where it has visibility
+// cells with position and normal), of a BRDF with wo. None of the files is symmetric, so that a mirrored, turned or
 // transposed frame shows.
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
@@ -107,14 +107,14 @@ Golden deep() {
     return golden("deep", cascade, environment_description(64, 32));
 }
 
-/// Not to be used alone: half of the sphere is left to its company.
-Golden company() {
+/// Not to be used alone: half of the sphere is left to its partner.
+Golden partner() {
     const Cascade cascade = {
         {{kTheta, {3, 5}, {0.75, 0.25, 0.0}, {1, -1, -1}, {}}, {kPhi, {2, 9}, {0.5, 0.0, 0.5}, {}, {}}}, {0}};
     Description description = environment_description(12, 10);
     description.chunks = {
-        company_chunk({ACDF_COMPANY_COSINE, ACDF_HEURISTIC_POWER, 3.0, 1.0}, 0.625f, {{0.625f, 0.0f}})};
-    return golden("company", cascade, description);
+        partner_chunk({ACDF_PARTNER_COSINE, ACDF_HEURISTIC_POWER, 3.0, 1.0}, 0.625f, {{0.625f, 0.0f}})};
+    return golden("partner", cascade, description);
 }
 
 /// One curve that three segments share.
@@ -252,15 +252,16 @@ Description local_axes(Description d, const std::vector<AxisDescription>& normal
     return d;
 }
 
-/// Four places, told apart by position and, in the last two, by the normal's z; two of them mixed at each border.
-/// `regions`: the first and the last tell the first split of tiles apart, those between them the second.
-Chunk places_chunk(bool regions) {
-    Chunk chunk{ACDF_CHUNK_PLACES, {}};
-    const AcdfPlaces header = {
+/// Four visibility, told apart by position and, in the last two, by the normal's z; two of them mixed at each
+/// border. `regions`: the first and the last tell the first split of tiles apart, those between them the second.
+Chunk visibility_chunk(bool regions) {
+    Chunk chunk{ACDF_CHUNK_VISIBILITY, {}};
+    const AcdfVisibility header = {
         3, 4, 1, regions, {-1, -2, 0}, {3, 2, 4}, {{0, 0, 1, 0.5f}, {1, 0, 0, 0}, {0, 1, 0, 0}}}; // y up, moved
-    const AcdfPlaceSplit splits[] = {{1.0f, 0.25f, 0 | ACDF_PLACE_ROW << 3, 1},
-                                     {0.5f, 0.5f, 1 | (ACDF_PLACE_ROW | 1) << 3, 2},
-                                     {0.25f, 0.125f, 5 | (ACDF_PLACE_ROW | 2) << 3, ACDF_PLACE_ROW | 3}};
+    const AcdfVisibilitySplit splits[] = {
+        {1.0f, 0.25f, 0 | ACDF_VISIBILITY_ROW << 3, 1},
+        {0.5f, 0.5f, 1 | (ACDF_VISIBILITY_ROW | 1) << 3, 2},
+        {0.25f, 0.125f, 5 | (ACDF_VISIBILITY_ROW | 2) << 3, ACDF_VISIBILITY_ROW | 3}};
     const std::uint16_t columns[] = {0, ACDF_NO_COLUMN, ACDF_NO_COLUMN, 0}, set_of_row[] = {0, 1, 1, 0};
     const std::uint8_t rows[] = {240, 30,  200, 200, 255, 7,
                                  17,  100, 128, 90,  180, 44}; // mixture, light and odds of each
@@ -276,7 +277,7 @@ Chunk places_chunk(bool regions) {
     return chunk;
 }
 
-/// Two portals that face two ways, in pieces, beside places_chunk. The last place draws by rows alone.
+/// Two portals that face two ways, in pieces, beside visibility_chunk. The last place samples by rows alone.
 Chunk portals_chunk() {
     Chunk chunk{ACDF_CHUNK_PORTALS, {}};
     const AcdfPortals header = {2, 2, 3, 2};
@@ -303,7 +304,7 @@ Chunk portals_chunk() {
 
 /// A local environment with everything that bins can share: tiles with a curve and without, one of them a light;
 /// bin 7 is not stored.
-Golden local(const char* name, AcdfParameterization parameterization, const std::vector<Chunk>& places = {}) {
+Golden local(const char* name, AcdfParameterization parameterization, const std::vector<Chunk>& visibility = {}) {
     const Cascade cascade = {{{kPhi, {5}, {0.375, 0.625}, {1, 2}, {}},
                               {kTheta, {2, 6}, {0.25, 0.5, 0.25}, {}, {}},
                               {kTheta, {3}, {0.75, 0.25}, {3, -1}, {}},
@@ -324,7 +325,7 @@ Golden local(const char* name, AcdfParameterization parameterization, const std:
                                {{"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 18, 0.0, 18.0}}, 18);
     d.chunks = shared_chunks(rows);
     d.chunks.push_back(local_chunk(0.25f, {{{0.6f, 0.0f, 0.8f}, 0.125f, 0.5f, 1, {5, 0}, {12, 3}}}));
-    d.chunks.insert(d.chunks.end(), places.begin(), places.end());
+    d.chunks.insert(d.chunks.end(), visibility.begin(), visibility.end());
     return {name, store(tree, d)};
 }
 
@@ -438,7 +439,7 @@ int main(int argc, char** argv) try {
           fitted(),
           tilted(),
           deep(),
-          company(),
+          partner(),
           shared_child(),
           wide(),
           many_segments("many_segments", ACDF_CODEC_NONE),
@@ -454,9 +455,9 @@ int main(int argc, char** argv) try {
           local_grid(),
           local_fast("local_fast", ACDF_PARAM_LATLONG),
           local_fast("octahedral_local_fast", ACDF_PARAM_OCTAHEDRAL),
-          local("places", ACDF_PARAM_LATLONG, {places_chunk(false)}),
-          local("places_regions", ACDF_PARAM_LATLONG, {places_chunk(true)}),
-          local("portals", ACDF_PARAM_LATLONG, {places_chunk(false), portals_chunk()}),
+          local("visibility", ACDF_PARAM_LATLONG, {visibility_chunk(false)}),
+          local("visibility_regions", ACDF_PARAM_LATLONG, {visibility_chunk(true)}),
+          local("portals", ACDF_PARAM_LATLONG, {visibility_chunk(false), portals_chunk()}),
           brdf("brdf", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, 0, 0.0f),
           brdf("brdf_mirrored", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, ACDF_VIEWS_MIRRORED, 0.0f),
           brdf("brdf_anisotropic", {0.125f, 0.5f, 0.875f}, 4, 0, 0.0f),

@@ -1,4 +1,4 @@
-// Writes test vectors for readers of .acdf files: for each file NAME.acdf a NAME.csv of what is drawn from it and
+// Writes test vectors for readers of .acdf files: for each file NAME.acdf a NAME.csv of what is sampled from it and
 // of densities (format/vectors/README.md), and table.acdf, which golden files lack.
 //
 //   make_vectors OUTDIR FILE.acdf...
@@ -125,15 +125,16 @@ const std::vector<std::vector<float>> kNormals = {{0, 0, 1},
                                                   {0, 0, 0},
                                                   {kNanF, 0, 1},
                                                   {1e-30f, 2e-30f, -1e-30f}};
-/// Of a file with places: in its cells, on their borders, at the bounds of all, outside, and not a number.
+/// Of a file with visibility cells: in its cells, on their borders, at the bounds of all, outside, and not a
+/// number.
 const std::vector<std::vector<float>> kPositions = {{0, 1, 0},    {-1, 1, 1.5f}, {0.2f, 1, 0.6f}, {0.6f, 2, 0.375f},
                                                     {2, 4, 2.5f}, {5, 1, 0},     {kNanF, 0, 1}};
 const std::vector<std::vector<float>> kViews = {{0, 0, 1},        {0.6f, 0, 0.8f},         {-0.48f, 0.64f, 0.6f},
                                                 {0, -0.8f, 0.6f}, {-0.96f, -0.28f, 1e-3f}, {0.28f, -0.96f, 0.01f},
                                                 {0, 0, -1},       {0.6f, 0, 0.6f}};
 
-/// As conditional_rows, of a local environment with places: a position comes before each normal.
-std::string place_rows(const acdf::LocalEnvironmentView& view) {
+/// As conditional_rows, of a local environment with visibility cells: a position comes before each normal.
+std::string visibility_rows(const acdf::LocalEnvironmentView& view) {
     std::string text = "call,px,py,pz,nx,ny,nz,u0,u1,x,y,z,pdf\n";
     std::size_t offset = 0;
     const auto numbers = random_numbers(40);
@@ -236,7 +237,7 @@ std::string table_rows(const acdf::TableView& view) {
         std::string bin;
         for (const std::uint32_t i : index) bin += std::to_string(i) + ',';
         for (const auto& [u0, u1] : random_numbers(12)) {
-            std::vector<double> u(sampled), x(sampled, 0.0); // nothing is drawn
+            std::vector<double> u(sampled), x(sampled, 0.0); // nothing is sampled
             for (std::uint32_t axis = 0; axis < sampled; ++axis)
                 u[axis] = axis == 0 ? u0 : axis == 1 ? u1 : random.next();
             const double pdf = view.sample(index.data(), u.data(), x.data());
@@ -254,7 +255,7 @@ std::string table_rows(const acdf::TableView& view) {
 std::string rows_of(const acdf::File& file) {
     switch (file.kind()) {
     case ACDF_KIND_LOCAL:
-        if (file.local().has_places()) return place_rows(file.local());
+        if (file.local().has_visibility()) return visibility_rows(file.local());
         return conditional_rows(file.local(), kNormals, "nx,ny,nz");
     case ACDF_KIND_BRDF:
         return conditional_rows(file.brdf(), kViews, "ox,oy,oz");

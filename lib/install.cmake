@@ -21,7 +21,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_tables.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_view.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cells.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/company.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/partner.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut_sample.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut_wave.h
@@ -40,10 +40,10 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_corners.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_fast.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_fast_point.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_lights.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/bright_tiles.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_parts.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_pdf.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_place.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_position.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_point.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_tables.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/method.h
@@ -53,7 +53,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/part_queue.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/part_rating.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/pieces.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/places.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/visibility.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/portals.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_c.h

@@ -51,16 +51,16 @@ set(CPACK_COMPONENTS_ALL "")
 set(same "(= ${PROJECT_VERSION})")
 if(TARGET acdf)
     acdf_debian_package(program acdf-tools "" "compact importance sampling of measured light and reflectance"
-        "The program acdf turns environment maps, BRDFs and tables into small\nfiles of adaptive numerical CDFs, measures exactly how much noise they\nhave, and draws and evaluates samples."
+        "The program acdf turns environment maps, BRDFs and tables into small\nfiles of adaptive numerical CDFs, measures exactly how much noise they\nhave, and takes and evaluates samples."
         tools manual)
 endif()
 if(ACDF_BUILD_SHARED)
     acdf_debian_package(libraries libacdf0 "" "importance sampling of measured light: shared libraries"
-        "The reader draws from .acdf files and evaluates their densities, the\nbuilder makes them in memory."
+        "The reader samples from .acdf files and evaluates their densities, the\nbuilder makes them in memory."
         runtime)
     acdf_debian_package(development libacdf-dev "libacdf0 ${same}, zlib1g-dev, libtbb-dev"
         "importance sampling of measured light: headers and libraries"
-        "To draw from .acdf files in a renderer (C, C++ and kernels), and to make\nthem in memory: static and shared libraries, for CMake and pkg-config."
+        "To sample from .acdf files in a renderer (C, C++ and kernels), and to make\nthem in memory: static and shared libraries, for CMake and pkg-config."
         reader builder shared)
     set(CPACK_DEBIAN_LIBRARIES_PACKAGE_CONTROL_EXTRA
         ${PROJECT_BINARY_DIR}/debian/triggers ${PROJECT_BINARY_DIR}/debian/shlibs)
@@ -73,7 +73,7 @@ endif()
 if(TARGET acdf_python)
     acdf_debian_package(scripting python3-acdf "python3, python3-numpy"
         "importance sampling of measured light for Python"
-        "The module acdf draws from .acdf files and evaluates their densities for\narrays of NumPy, and makes files from them."
+        "The module acdf samples from .acdf files and evaluates their densities for\narrays of NumPy, and makes files from them."
         python)
     set(CPACK_DEBIAN_SCRIPTING_PACKAGE_SECTION python)
     # What Python compiled beside the module would keep its folder.

@@ -4,11 +4,11 @@
 #include "input/probe/image_header.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
-#include "tools/cli/company_options.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
+#include "tools/cli/mis_options.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
@@ -52,7 +52,7 @@ private:
     bool given(const char* option) const { return command_->get_option(option)->count() > 0; }
     builder::EnvironmentOptions with_source() const;
     void use_renderers_partner();
-    void check_company() const;
+    void check_partner() const;
     void set_knots();
     void add_fit_options(CLI::App& command);
     std::uint64_t memory_of_tree(std::uint64_t pixels) const;
@@ -116,17 +116,18 @@ void EnvConversion::use_renderers_partner() {
     if (!renderer_) return;
     builder::EnvironmentOptions options = environment_;
     if (scene_.given()) options.normals = {{}}; // any
-    for_partner_ = use_partner(*command_, renderer_->company(options), environment_.company);
+    for_partner_ = use_partner(*command_, renderer_->partner(options), environment_.mis);
 }
 
-void EnvConversion::check_company() const {
-    const bool alone = environment_.company.kind == ACDF_COMPANY_NONE;
+void EnvConversion::check_partner() const {
+    const bool alone = environment_.mis.kind == ACDF_PARTNER_NONE;
     for (const char* option : {"--shares", "--heuristic", "--scene"})
-        if (alone && given(option)) throw CLI::ValidationError(option, "is for files with a company (--with)");
+        if (alone && given(option)) throw CLI::ValidationError(option, "is for files with an MIS partner (--mis)");
     for (const char* option : {"--target-variance", "--max-weight"})
-        if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
+        if (!alone && given(option))
+            throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
     if (!alone && environment_.fit.fit != ACDF_FIT_VARIANCE)
-        throw CLI::ValidationError("--with", "is for --fit variance");
+        throw CLI::ValidationError("--mis", "is for --fit variance");
 }
 
 void EnvConversion::check() {
@@ -138,7 +139,7 @@ void EnvConversion::check() {
     if (fit == ACDF_FIT_VARIANCE) read_goal(*command_, budget_, environment_.goal);
     else set_knots();
     use_renderers_partner();
-    check_company();
+    check_partner();
 }
 
 /// The options as they will be, but for what only the probe's file tells.
@@ -179,7 +180,7 @@ nlohmann::ordered_json EnvConversion::report(const ProbeTarget& loaded, const bu
         {"kl_divergence", known_json(!a.combined, a.kl_divergence)},
         {"max_weight", a.max_weight},
         {"support_violations", a.support_violations}};
-    if (a.combined) out["combined"] = true; // of the file and its company
+    if (a.combined) out["combined"] = true; // of the file and its partner
     return out;
 }
 
@@ -212,15 +213,15 @@ std::uint64_t EnvConversion::memory() const {
 Converted EnvConversion::convert(const Listener& listener) {
     const ProbeTarget loaded = load_target(source, input_, environment_.target, listener.note);
     if (renderer_) scene_.note_axes(*command_, *renderer_, loaded.probe.source_map.layout, listener.note);
-    if (for_partner_) listener.note(partner_text(*renderer_, environment_.company));
+    if (for_partner_) listener.note(partner_text(*renderer_, environment_.mis));
     builder::EnvironmentOptions options = environment_;
     options.source = source_of(loaded.probe, input_);
     options.normals = scene_.read(listener.note);
-    const auto company = options.company.kind;
-    if (!scene_.given() && (company == ACDF_COMPANY_COSINE || company == ACDF_COMPANY_BRDF))
+    const auto partner = options.mis.kind;
+    if (!scene_.given() && (partner == ACDF_PARTNER_COSINE || partner == ACDF_PARTNER_BRDF))
         listener.note(
             "made for all normals alike; where most of what is seen faces the sky, --scene with its normals, or "
-            "else --with mean, has less noise");
+            "else --mis mean, has less noise");
     if (scene_.given()) options.normals_text = scene_.text();
     builder::Environment result;
     require_built(source, builder::environment(loaded.target, options, result, told(listener.progress)));
@@ -230,7 +231,7 @@ Converted EnvConversion::convert(const Listener& listener) {
     char summary[240];
     std::snprintf(summary, sizeof summary, "%llu cells, %srelative variance %.4g%s (%s fit%s)",
                   static_cast<unsigned long long>(result.accuracy.cells),
-                  result.accuracy.combined ? "with its company " : "", result.accuracy.relative_variance,
+                  result.accuracy.combined ? "with its MIS partner " : "", result.accuracy.relative_variance,
                   result.accuracy.combined ? " a sample, mean over normals; not to be used alone" : "",
                   build::fit_name(environment_.fit.fit).c_str(),
                   result.order != builder::Order::best
@@ -303,13 +304,13 @@ void EnvConversion::add_options(CLI::App& command) {
     add_renderer(command, renderer_);
     add_repairs(command, input_);
     add_fit_options(command);
-    add_company(command, environment_.company, true);
+    add_partner(command, environment_.mis, true);
     scene_.add(command,
-               "The normals that the company lights: a mesh (.obj, .ply, .instances), a normal pass (.exr) or a "
+               "The normals that the partner lights: a mesh (.obj, .ply, .instances), a normal pass (.exr) or a "
                "list of normals "
                "(.txt, x y z [weight] a line)",
-               "Company");
-    scene_.add_axes(command, "Company");
+               "MIS partner");
+    scene_.add_axes(command, "MIS partner");
     add_target_options(command, environment_.target);
     add_codec(command, environment_.codec);
 }

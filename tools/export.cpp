@@ -1,5 +1,5 @@
-// acdf export: draws and densities of an environment, a local environment or a BRDF for shaders: functions in their
-// languages, and tables.
+// acdf export: samples and densities of an environment, a local environment or a BRDF for shaders: functions in
+// their languages, and tables.
 #include "shader/texts.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"
@@ -63,8 +63,8 @@ std::string description(const ExportArguments& options, const LoadedFile& loaded
     json["resolution"] = {loaded.file.axis(0).resolution, loaded.file.axis(1).resolution};
     json["total"] = loaded.file.description().total;
     if (loaded.file.kind() == ACDF_KIND_ENVIRONMENT)
-        json["recommended_share"] = loaded.file.environment().recommended_share();
-    json["needs_company"] = loaded.file.company() != nullptr;
+        json["recommended_light_share"] = loaded.file.environment().recommended_light_share();
+    json["requires_mis"] = loaded.file.partner() != nullptr;
     const std::string head = json.dump(2);
     if (!options.tables.empty()) return head + "\n";
     return head.substr(0, head.size() - 2) + ",\n  \"tables\": [\n" + rows_of_words(tables, "%u", "    ") +
@@ -129,7 +129,7 @@ void add_export(CLI::App& program, int& exit_code) {
                                          {"json", Target::json}};
     auto options = std::make_shared<ExportArguments>();
     CLI::App* command = program.add_subcommand("export", "Write an environment, a local environment or a BRDF for "
-                                                         "shaders: functions that draw and evaluate, and tables");
+                                                         "shaders: functions that sample and evaluate, and tables");
     command
         ->add_option("FILE", options->file,
                      "The .acdf file of an environment, a local environment or a BRDF (- is stdin)")

@@ -1,7 +1,7 @@
 // acdf info: what is inside a file, in a form for people or as JSON.
 #include "build/accuracy/cells.h"
-#include "build/text/company.h"
 #include "build/text/format_names.h"
+#include "build/text/partner.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
@@ -149,14 +149,14 @@ Json local_json(const File& file) {
     report["tiles"] = local.blend.tiles ? local.blend.tiles->tile_count : 0;
     if (is_fast(file)) report["shape"] = "fast"; // the usual one is not told
     report["rows"] = local.blend.tiles ? local.blend.tiles->row_count : 0;
-    report["lights"] = local.light_count;
+    report["bright_tiles"] = local.bright_tile_count;
     report["cosine_share"] = local.cosine_share;
-    if (const AcdfPlaces* places = local.places.header)
-        report["places"] = {{"cells", places->split_count + 1},
-                            {"rows", places->row_count},
-                            {"columns", places->column_count},
-                            {"low", places->low},
-                            {"high", places->high}};
+    if (const AcdfVisibility* visibility = local.visibility.header)
+        report["visibility"] = {{"cells", visibility->split_count + 1},
+                                {"rows", visibility->row_count},
+                                {"columns", visibility->column_count},
+                                {"low", visibility->low},
+                                {"high", visibility->high}};
     if (const AcdfPortals* portals = local.portals.header)
         report["portals"] = {{"count", portals->portal_count},
                              {"maps", portals->map_count},
@@ -166,21 +166,21 @@ Json local_json(const File& file) {
 }
 
 /// What a file is not to be used without.
-Json company_json(const File& file) {
-    const AcdfCompany& company = *file.company();
+Json partner_json(const File& file) {
+    const AcdfPartner& partner = *file.partner();
     Json report;
-    report["with"] = build::company_name(static_cast<AcdfCompanyKind>(company.kind));
-    report["heuristic"] = build::heuristic_name(static_cast<AcdfHeuristic>(company.heuristic));
-    report["share"] = company.share;
-    report["recommended_share"] = company.recommended_share;
-    float least = company.recommended_share, most = least;
-    for (std::uint32_t i = 0; i < company.record_count; ++i) {
+    report["kind"] = build::partner_name(static_cast<AcdfPartnerKind>(partner.kind));
+    report["heuristic"] = build::heuristic_name(static_cast<AcdfHeuristic>(partner.heuristic));
+    report["share"] = partner.share;
+    report["recommended_light_share"] = partner.recommended_light_share;
+    float least = partner.recommended_light_share, most = least;
+    for (std::uint32_t i = 0; i < partner.record_count; ++i) {
         if (file.kind() != ACDF_KIND_TABLE && file.bin(i).root == ACDF_NO_ROOT) continue;
-        least = std::min(least, acdf_company_bin_share(&company, i));
-        most = std::max(most, acdf_company_bin_share(&company, i));
+        least = std::min(least, acdf_partner_bin_share(&partner, i));
+        most = std::max(most, acdf_partner_bin_share(&partner, i));
     }
-    report["least_recommended_share"] = least;
-    report["largest_recommended_share"] = most;
+    report["least_recommended_light_share"] = least;
+    report["largest_recommended_light_share"] = most;
     return report;
 }
 
@@ -198,7 +198,7 @@ Json describe(const std::string& path, const File& file) {
     report["cells"] = counts.cells;
     report["curves"] = counts.curves;
     if (header.kind == ACDF_KIND_LOCAL) report["local"] = local_json(file);
-    if (file.company()) report["company"] = company_json(file);
+    if (file.partner()) report["partner"] = partner_json(file);
     report["axes"] = axes_json(file);
     report["fit"] = build::fit_name(description.fit);
     report["filter"] = build::filter_name(description.filter);
@@ -246,25 +246,27 @@ std::string local_text(const Json& local) {
     const std::string shared = local["tiles"] == 0
                                    ? "a tree each"
                                    : text_of(local["tiles"]) + " tiles shared by " + text_of(local["rows"]) +
-                                         " rows, " + text_of(local["lights"]) + " lights" +
+                                         " rows, " + text_of(local["bright_tiles"]) + " bright tiles" +
                                          (local.contains("shape") ? "; shape " + text_of(local["shape"]) : "");
-    const std::string places = local.contains("places")
-                                   ? "; " + text_of(local["places"]["cells"]) + " places from " +
-                                         text_of(local["places"]["low"]) + " to " + text_of(local["places"]["high"])
-                                   : "";
+    const std::string visibility = local.contains("visibility")
+                                       ? "; " + text_of(local["visibility"]["cells"]) + " visibility cells from " +
+                                             text_of(local["visibility"]["low"]) + " to " +
+                                             text_of(local["visibility"]["high"])
+                                       : "";
     const std::string portals =
         local.contains("portals")
             ? "; " + text_of(local["portals"]["count"]) + " portals, " + text_of(local["portals"]["maps"]) +
                   " maps of " + text_of(local["portals"]["cells"]) + " x " + text_of(local["portals"]["cells"])
             : "";
-    return bins + shared + "; cosine share " + number(local["cosine_share"]) + places + portals;
+    return bins + shared + "; cosine share " + number(local["cosine_share"]) + visibility + portals;
 }
 
-std::string company_text(const Json& company) {
-    return text_of(company["with"]) + " (" + text_of(company["heuristic"]) + " heuristic, " +
-           number(100.0 * company["share"].get<double>()) + " % of samples from this file); recommended share " +
-           number(company["recommended_share"]) + ", from " + number(company["least_recommended_share"]) + " to " +
-           number(company["largest_recommended_share"]) + "; not to be used alone";
+std::string partner_line(const Json& partner) {
+    return text_of(partner["kind"]) + " (" + text_of(partner["heuristic"]) + " heuristic, " +
+           number(100.0 * partner["share"].get<double>()) + " % of samples from this file); recommended share " +
+           number(partner["recommended_light_share"]) + ", from " +
+           number(partner["least_recommended_light_share"]) + " to " +
+           number(partner["largest_recommended_light_share"]) + "; not to be used alone";
 }
 
 std::string source_text(const Json& source) {
@@ -295,7 +297,7 @@ void print(const Json& report) {
     if (const std::uint64_t tables = report["table_bytes"]; tables > 0)
         line("in memory", to_readable_size(tables) + " of tables besides, made when it is opened");
     if (report.contains("local")) line("normals", local_text(report["local"]));
-    if (report.contains("company")) line("company", company_text(report["company"]));
+    if (report.contains("partner")) line("partner", partner_line(report["partner"]));
     line("source", source_text(report["source"]));
     line("made by", text_of(report["tool"]));
     line("options", text_of(report["options"]));

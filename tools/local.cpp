@@ -5,12 +5,12 @@
 #include "input/probe/image_header.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
-#include "tools/cli/company_options.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
-#include "tools/cli/mesh_places.h"
+#include "tools/cli/mesh_visibility.h"
+#include "tools/cli/mis_options.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/portal_check.h"
@@ -35,8 +35,8 @@ namespace {
 // bytes a pixel; with a budget of 8 MiB 38 for each of its bytes.
 constexpr std::uint64_t kLocalMemory = 96 << 20, kLocalMemoryOfPixel = 40, kLocalMemoryOfByte = 40;
 
-// Places of meshes of up to 120,000 triangles, with budgets up to 4 MB: what their rays have met, and the mesh.
-constexpr std::uint64_t kPlacesMemory = 64 << 20, kPlacesMemoryOfByte = 200, kMeshMemoryOfByte = 32;
+// Visibility of meshes of up to 120,000 triangles, with budgets up to 4 MB: what their rays have met, and the mesh.
+constexpr std::uint64_t kVisibilityMemory = 64 << 20, kVisibilityMemoryOfByte = 200, kMeshMemoryOfByte = 32;
 
 class LocalConversion : public Conversion {
 public:
@@ -68,11 +68,11 @@ private:
     bool for_partner_ = false; ///< as the renderer's preset has it
     builder::LocalOptions local_;
     const CLI::App* command_ = nullptr;
-    bool no_sharing_ = false, places_ = false, volume_ = false;
+    bool no_sharing_ = false, visibility_ = false, volume_ = false;
 };
 
-/// The default budget of a file that tells places apart.
-constexpr std::uint64_t kPlacesBytes = std::uint64_t{4} << 20;
+/// The default budget of a file that stores visibility cells.
+constexpr std::uint64_t kVisibilityBytes = std::uint64_t{4} << 20;
 
 constexpr double kWorthwhile = 1.5; ///< gain below which a file without normals would do as well
 
@@ -127,22 +127,23 @@ void LocalConversion::check() {
     set_normals();
     read_goal(*command_, budget_, local_.goal);
     set_separate();
-    if (renderer_ && !places_) for_partner_ = use_partner(*command_, renderer_->company(local_), local_.company);
-    const bool alone = local_.company.kind == ACDF_COMPANY_NONE;
+    if (renderer_ && !visibility_) for_partner_ = use_partner(*command_, renderer_->partner(local_), local_.mis);
+    const bool alone = local_.mis.kind == ACDF_PARTNER_NONE;
     for (const char* option : {"--shares", "--heuristic"})
-        if (alone && given(option)) throw CLI::ValidationError(option, "is for files with a company (--with)");
-    for (const char* option : {"--no-sharing", "--cosine-share", "--places", "--max-weight"})
-        if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
-    if (portals_.given() && !places_) throw CLI::ValidationError("--portal", "is for --places");
-    if (volume_ && !places_) throw CLI::ValidationError("--volume", "is for --places");
+        if (alone && given(option)) throw CLI::ValidationError(option, "is for files with an MIS partner (--mis)");
+    for (const char* option : {"--no-sharing", "--cosine-share", "--visibility", "--max-weight"})
+        if (!alone && given(option))
+            throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
+    if (portals_.given() && !visibility_) throw CLI::ValidationError("--portal", "is for --visibility");
+    if (volume_ && !visibility_) throw CLI::ValidationError("--volume", "is for --visibility");
     if (local_.shape == builder::LocalShape::fast)
-        for (const char* option : {"--no-sharing", "--places", "--max-weight", "--with"})
+        for (const char* option : {"--no-sharing", "--visibility", "--max-weight", "--mis"})
             if (given(option)) throw CLI::ValidationError("--shape", std::string("fast goes without ") + option);
-    if (!places_) return;
-    if (!scene_.given()) throw CLI::ValidationError("--places", "needs --scene MESH");
+    if (!visibility_) return;
+    if (!scene_.given()) throw CLI::ValidationError("--visibility", "needs --scene MESH");
     for (const char* option : {"--no-sharing", "--cells", "--target-variance", "--max-weight"})
-        if (given(option)) throw CLI::ValidationError("--places", std::string("goes without ") + option);
-    if (!given("--budget")) local_.goal = builder::Goal::of_budget(kPlacesBytes);
+        if (given(option)) throw CLI::ValidationError("--visibility", std::string("goes without ") + option);
+    if (!given("--budget")) local_.goal = builder::Goal::of_budget(kVisibilityBytes);
 }
 
 std::vector<std::string*> LocalConversion::files() {
@@ -152,7 +153,7 @@ std::vector<std::string*> LocalConversion::files() {
 }
 
 std::string LocalConversion::scene_text() const {
-    return scene_.text() + (places_ ? " --places" : "") + (volume_ ? " --volume" : "") + portals_.text();
+    return scene_.text() + (visibility_ ? " --visibility" : "") + (volume_ ? " --volume" : "") + portals_.text();
 }
 
 std::string LocalConversion::option_text() const {
@@ -171,14 +172,14 @@ builder::LocalOptions LocalConversion::read_scene(const Note& note) const {
     if (!scene_.given()) return local;
     local.normals = scene_.read(note);
     local.normals_text = scene_text();
-    if (places_) {
+    if (visibility_) {
         local.normals = both_sides(std::move(local.normals));
         if (volume_) local.normals.clear(); // what hangs in the air has any
         const std::shared_ptr<const input::MeshSurface> surface = read_surface(scene_, note);
-        local.places = places_on(surface, scene_.input().up, volume_);
-        if (!scene_.axes().ours()) scene_.axes().tell(local.places);
-        portals_.tell(local.places);
-        note_portals(local.places, *surface, note);
+        local.visibility = visibility_on(surface, scene_.input().up, volume_);
+        if (!scene_.axes().ours()) scene_.axes().tell(local.visibility);
+        portals_.tell(local.visibility);
+        note_portals(local.visibility, *surface, note);
     }
     return local;
 }
@@ -198,7 +199,7 @@ nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const 
         {"bytes", result.bytes.size()},
         {"bins", file.description().bin_count},
         {"tiles", file.blend().tiles ? file.blend().tiles->tile_count : 0},
-        {"places", file.local().has_places() ? file.local().data().places.header->row_count : 0},
+        {"visibility", file.local().has_visibility() ? file.local().data().visibility.header->row_count : 0},
         {"shape", result.shape == builder::LocalShape::fast ? "fast" : "small"},
         {"normals", result.normals},
         {"relative_variance", a.relative_variance},
@@ -208,7 +209,7 @@ nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const 
         {"share_above_horizon", a.share_above_horizon},
         {"least_share_above_horizon", a.least_share_above_horizon},
         {"support_violations", a.support_violations}};
-    if (a.combined) out["combined"] = true; // of the file and its company
+    if (a.combined) out["combined"] = true; // of the file and its partner
     return out;
 }
 
@@ -216,10 +217,11 @@ std::string summary_of(const builder::Local& result) {
     const builder::LocalAccuracy& a = result.accuracy;
     char text[320];
     if (a.combined) {
-        std::snprintf(text, sizeof text,
-                      "with its company, relative variance %.4g a sample over %u normals: %.3g times less than the "
-                      "probe's own CDF with it (%.4g); not to be used alone",
-                      a.relative_variance, a.lit_normals, gain(result), a.relative_variance_full_cdf);
+        std::snprintf(
+            text, sizeof text,
+            "with its MIS partner, relative variance %.4g a sample over %u normals: %.3g times less than the "
+            "probe's own CDF with it (%.4g); not to be used alone",
+            a.relative_variance, a.lit_normals, gain(result), a.relative_variance_full_cdf);
         return text;
     }
     std::snprintf(text, sizeof text,
@@ -235,17 +237,17 @@ std::uint64_t LocalConversion::memory() const {
     if (pixels == 0) return 0;
     const std::uint64_t alone = kLocalMemory + pixels * kLocalMemoryOfPixel;
     const bool bounded = local_.goal.kind == builder::Goal::Kind::budget;
-    if (!places_) return alone + (bounded ? local_.goal.budget * kLocalMemoryOfByte : 0);
-    std::uint64_t places = kPlacesMemory + kPlacesMemoryOfByte * local_.goal.budget;
-    for (const std::string& path : scene_.paths) places += kMeshMemoryOfByte * input::scene_bytes(path);
-    return alone + places;
+    if (!visibility_) return alone + (bounded ? local_.goal.budget * kLocalMemoryOfByte : 0);
+    std::uint64_t visibility = kVisibilityMemory + kVisibilityMemoryOfByte * local_.goal.budget;
+    for (const std::string& path : scene_.paths) visibility += kMeshMemoryOfByte * input::scene_bytes(path);
+    return alone + visibility;
 }
 
 Converted LocalConversion::convert(const Listener& listener) {
     builder::LocalOptions local = read_scene(listener.note);
     const ProbeTarget loaded = load_target(source, input_, local.target, listener.note);
     if (renderer_) scene_.note_axes(*command_, *renderer_, loaded.probe.source_map.layout, listener.note);
-    if (for_partner_) listener.note(partner_text(*renderer_, local_.company));
+    if (for_partner_) listener.note(partner_text(*renderer_, local_.mis));
     local.source = source_of(loaded.probe, input_);
     builder::Local result;
     require_built(source, builder::local(loaded.target, local, result, told(listener.progress)));
@@ -278,21 +280,22 @@ void LocalConversion::add_bins(CLI::App& command) {
     scene_.add_axes(command, "Normals");
     command
         .add_flag(
-            "--places", places_,
-            "Tell the places of the scene (a mesh) apart: what it hides from a place is not drawn there. Positions "
-            "are told in the mesh's own coordinates; more than half of the budget, by default 4 MiB, is for this")
+            "--visibility", visibility_,
+            "Store what the scene (a mesh) hides from each of its positions, in visibility cells: hidden light is "
+            "not sampled. Positions are in the mesh's own coordinates; more than half of the budget, by default "
+            "4 MiB, is for the cells")
         ->group("Normals");
     command
         .add_flag(
             "--volume", volume_,
-            "With --places: also in the air, in the box around the scene, and for all normals. For what has no "
+            "With --visibility: also in the air, in the box around the scene, and for all normals. For what has no "
             "surface there, such as smoke, hair or things that move")
         ->group("Normals");
     portals_.add(command, "Normals");
     command
         .add_option(
             "--cosine-share", local.cosine_share,
-            "This share of samples is drawn around the normal instead, density cos/pi; sample and pdf apply "
+            "This share of samples is taken around the normal instead, density cos/pi; sample and pdf apply "
             "the mixture. For scenes in which the brightest light is often hidden; 0.2 is a good value")
         ->check(number_range(0.0, 0.99))
         ->option_text("X [0]")
@@ -368,7 +371,7 @@ void LocalConversion::add_options(CLI::App& command) {
     add_bins(command);
     add_size(command);
     add_shape(command);
-    add_company(command, local_.company, false);
+    add_partner(command, local_.mis, false);
     add_separate(command);
     add_target_options(command, local_.target);
     add_codec(command, local_.codec);
@@ -391,7 +394,7 @@ void add_local(CLI::App& program, int& exit_code) {
                      "acdf local probe.exr\n"
                      "acdf local probe.exr -o small.acdf --budget 128KiB\n"
                      "acdf local probe.exr -o car.acdf --scene car.obj --scene-up y --cosine-share 0.2\n"
-                     "acdf local probe.exr -o room.acdf --scene walls.obj --scene things.ply --places\n"
+                     "acdf local probe.exr -o room.acdf --scene walls.obj --scene things.ply --visibility\n"
                      "acdf local probe.exr -o paper.acdf --no-sharing --normals 25x10 --fit cdf --knots 64x64")},
         exit_code);
 }

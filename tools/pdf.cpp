@@ -170,7 +170,7 @@ void add_pdf(CLI::App& program, int& exit_code) {
     command
         ->add_flag("--normalize", options->normalize,
                    "Scale directions to unit length first. Without it a direction that is not of unit length has "
-                   "density 0, as in a renderer, where it tells of a mistake")
+                   "density 0, as in a renderer, where it shows a mistake")
         ->group("Evaluation");
     add_normal(*command, options->normal, "Evaluation", "; without it each line has one: x y z nx ny nz");
     add_view(*command, options->view, "Evaluation");

@@ -56,7 +56,7 @@ constexpr Command commands[] = {
 
 constexpr const char* program_description =
     "Compact importance sampling of measured light and reflectance: turns probes into small adaptive CDFs (.acdf), "
-    "measures them exactly, and draws and evaluates samples.";
+    "measures them exactly, and takes and evaluates samples.";
 
 constexpr const char* program_footer =
     "`acdf help COMMAND` explains a command, with examples.\n\n"

@@ -1,4 +1,4 @@
-// acdf sample: directions drawn from a file, as CSV.
+// acdf sample: directions sampled from a file, as CSV.
 #include "measure/sequences.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"
@@ -34,7 +34,7 @@ struct SampleArguments {
 };
 
 constexpr std::uint64_t max_count = std::uint64_t{1} << 32; // of the Sobol' sequence; 300 GB of text
-constexpr std::size_t kTogether = 4096;                     // are drawn at once
+constexpr std::size_t kTogether = 4096;                     // are sampled at once
 
 // 9 and 17 significant digits give back exactly the float and the double that they print.
 std::string csv_line(const double u[2], const DirectionSample& s) {
@@ -56,7 +56,7 @@ void write_samples(const SampleArguments& options, const Write& write) {
     }
 }
 
-/// Writes numbers of the sequence, and the directions that `draw(numbers, count, samples)` makes of them.
+/// Writes numbers of the sequence, and the directions that `sample(numbers, count, samples)` makes of them.
 template <class Draw>
 void write_directions(const SampleArguments& options, Output& output, const Draw& draw) {
     measure::Sequence sequence(options.sequence, options.count, options.seed);
@@ -87,7 +87,8 @@ void sample_local(const File& file, const SampleArguments& options, Output& outp
     if (!options.at.empty()) throw Failure(options.file + ": a local environment has no --at; give --normal X,Y,Z");
     const AcdfLocalPoint point = file.local().at(chosen_normal(options.file, options.normal).data());
     if (point.what == ACDF_LOCAL_NOTHING)
-        throw Failure(options.file + ": no light reaches this normal, so there is nothing to draw; choose another");
+        throw Failure(options.file +
+                      ": no light reaches this normal, so there is nothing to sample; choose another");
     const LocalWavefront view(file.local());
     write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
         view.sample(point, u, count, samples);
@@ -99,7 +100,7 @@ void sample_brdf(const File& file, const SampleArguments& options, Output& outpu
     const std::array<float, 3> wo = chosen_view(options.file, file, options.view);
     const BrdfView view = file.brdf();
     if (!(view.albedo(wo.data()) > 0.0))
-        throw Failure(options.file + ": nothing is reflected to this view, so there is nothing to draw");
+        throw Failure(options.file + ": nothing is reflected to this view, so there is nothing to sample");
     write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
         for (std::size_t i = 0; i < count; ++i) samples[i] = view.sample(wo.data(), u[i][0], u[i][1]);
     });
@@ -113,7 +114,8 @@ void sample_table(const File& file, const SampleArguments& options, Output& outp
                       ", not 2; use --sequence random");
     const std::vector<std::uint32_t> bin = chosen_bin(options.file, view, options.at);
     if (!(view.share(bin.data()) > 0.0))
-        throw Failure(options.file + ": this bin is empty, so there is nothing to draw; choose another with --at");
+        throw Failure(options.file +
+                      ": this bin is empty, so there is nothing to sample; choose another with --at");
     measure::Sequence sequence(options.sequence, options.count, options.seed);
     output.write(point_columns("u", n) + point_columns("x", n) + "pdf\n");
     write_samples(options, [&](std::size_t count) {
@@ -130,9 +132,9 @@ void run(const SampleArguments& options) {
     Output output(options.output, options.force, {options.file});
     const LoadedFile loaded = load_file(options.file);
     const AcdfKind kind = loaded.file.kind();
-    if (loaded.file.company() && !options.quiet)
+    if (loaded.file.partner() && !options.quiet)
         say(options.file +
-            ": is made for a company (--with) and not to be used alone: its samples leave out light");
+            ": is made for an MIS partner (--mis) and not to be used alone: its samples leave out light");
     if (kind != ACDF_KIND_LOCAL) refuse_normal(options.file, options.normal);
     if (kind != ACDF_KIND_BRDF) refuse_view(options.file, options.view);
     if (kind == ACDF_KIND_ENVIRONMENT) sample_environment(loaded.file, options, output);
@@ -150,9 +152,9 @@ void add_sample(CLI::App& program, int& exit_code) {
                                                           {"sobol", measure::SequenceKind::sobol}};
     auto options = std::make_shared<SampleArguments>();
     CLI::App* command = program.add_subcommand(
-        "sample", "Draw directions, or points of a table: CSV of random numbers, direction and density");
+        "sample", "Sample directions, or points of a table: CSV of random numbers, direction and density");
     command->add_option("FILE", options->file, "The .acdf file to sample (- is stdin)")->required()->type_name("");
-    command->add_option("-n,--count", options->count, "How many directions to draw")
+    command->add_option("-n,--count", options->count, "How many directions to sample")
         ->required()
         ->option_text("N (required)")
         ->check(CLI::Range(std::uint64_t{1}, max_count))

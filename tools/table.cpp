@@ -5,12 +5,12 @@
 #include "input/sha256.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
-#include "tools/cli/company_options.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
 #include "tools/cli/messages.h"
+#include "tools/cli/mis_options.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
@@ -127,21 +127,22 @@ nlohmann::ordered_json report(const TableArguments& options, const input::NpyArr
         {"kl_divergence", known_json(!a.combined, a.kl_divergence)},
         {"max_weight", a.max_weight},
         {"support_violations", a.support_violations}};
-    if (a.combined) out["combined"] = true; // of the file and its company
+    if (a.combined) out["combined"] = true; // of the file and its partner
     out["notes"] = remarks(array);
     return out;
 }
 
-/// The table that is the company, as `table` refers to it.
+/// The table that is the partner, as `table` refers to it.
 input::NpyArray read_other(TableArguments& options) {
     for (const char* option : {"--shares", "--heuristic"})
         if (options.other.empty() && options.given(option))
-            throw CLI::ValidationError(option, "is for files with a company (--with)");
+            throw CLI::ValidationError(option, "is for files with an MIS partner (--mis)");
     if (options.other.empty()) return {};
     for (const char* option : {"--max-weight", "--target-variance"})
-        if (options.given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
+        if (options.given(option))
+            throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
     input::NpyArray other = input::read_npy(options.other, options.input);
-    options.table.company.kind = ACDF_COMPANY_TABLE;
+    options.table.mis.kind = ACDF_PARTNER_TABLE;
     options.table.other = {other.values.data(), builder::Number::float32, other.shape, {}};
     options.table.other_source.name = input::file_name(options.other);
     options.table.other_source.sha256 = input::file_sha256(options.other);
@@ -181,12 +182,12 @@ void run(TableArguments& options) {
     else if (!options.quiet && bins == 1)
         std::fprintf(out, "%s: %s, %" PRIu64 " cells, %srelative variance %.4g%s\n",
                      printable(options.output).c_str(), to_readable_size(result.bytes.size()).c_str(), a.cells,
-                     a.combined ? "with its company " : "", a.relative_variance,
+                     a.combined ? "with its MIS partner " : "", a.relative_variance,
                      a.combined ? " a sample; not to be used alone" : "");
     else if (!options.quiet)
         std::fprintf(out, "%s: %s, %zu bins, %" PRIu64 " cells, %srelative variance %.4g (mean; worst %.4g)%s\n",
                      printable(options.output).c_str(), to_readable_size(result.bytes.size()).c_str(), bins,
-                     a.cells, a.combined ? "with its company " : "", a.relative_variance, a.worst,
+                     a.cells, a.combined ? "with its MIS partner " : "", a.relative_variance, a.worst,
                      a.combined ? "; not to be used alone" : "");
 }
 
@@ -195,7 +196,7 @@ void add_axis_options(CLI::App& command, TableArguments& options) {
         .add_option(
             "--indexed", options.table.indexed,
             "How many of the first axes are chosen by whoever samples (a view direction, a pixel) instead of "
-            "drawn: each combination of their indices is a bin with a density of its own")
+            "sampled: each combination of their indices is a bin with a density of its own")
         ->check(CLI::Range(0u, 5u))
         ->option_text("K [0]")
         ->group("Axes");
@@ -214,7 +215,7 @@ void add_axis_options(CLI::App& command, TableArguments& options) {
                                                          {"zero", input::BadValuePolicy::zero}};
     add_choice(command, "--bad-values", options.input.bad_values, policies,
                "What to do about NaN, infinities and negative numbers: error (refuse, and say how many and where) "
-               "or zero (nothing is drawn there)")
+               "or zero (nothing is sampled there)")
         ->option_text("NAME [error]")
         ->group("Input");
 }
@@ -226,17 +227,17 @@ void add_size_options(CLI::App& command, TableArguments& options) {
     add_max_weight(command, options.table.max_weight, ". In every bin");
 }
 
-void add_company_options(CLI::App& command, TableArguments& options) {
+void add_mis_options(CLI::App& command, TableArguments& options) {
     command
         .add_option(
-            "--with", options.other,
-            "Another table of the same shape, which your renderer also draws from, weighing both by multiple "
+            "--mis", options.other,
+            "Another table of the same shape, which your renderer also samples from, weighing both by multiple "
             "importance sampling: within each bin its numbers are its density. Where that is enough the "
             "density of the file is 0: never use such a file alone")
         ->type_name("")
         ->option_text("OTHER.npy")
-        ->group("Company");
-    add_weighing(command, options.table.company);
+        ->group("MIS partner");
+    add_weighing(command, options.table.mis);
 }
 
 } // namespace
@@ -254,7 +255,7 @@ void add_table(CLI::App& program, int& exit_code) {
         ->group("Input");
     add_axis_options(command, *options);
     add_size_options(command, *options);
-    add_company_options(command, *options);
+    add_mis_options(command, *options);
     add_output(command, options->output, options->force,
                "The .acdf file to write, or a folder for it; without it NAME.acdf beside the array");
     add_codec(command, options->table.codec);

@@ -1,4 +1,4 @@
-// Light that is not infinitely far, at any point: draws directions from the light field of docs/table.md between
+// Light that is not infinitely far, at any point: samples directions from the light field of docs/table.md between
 // its cameras, with their exact density, and estimates the irradiance there: light_at_point light_field.acdf
 #include <acdf/reader.h>
 
@@ -21,7 +21,7 @@ double radiance(double s, double t, double u, double v) {
 
 constexpr int cameras = 8; // along s and along t
 
-// The four cameras around a point, and how likely each is drawn from.
+// The four cameras around a point, and how likely each is sampled from.
 struct Slice {
     std::uint32_t camera[4][2];
     double share[4]; // their sum is 1, or 0 where nothing arrives
@@ -47,14 +47,14 @@ Slice slice_at(const acdf::TableView& field, double s, double t) {
     return out;
 }
 
-// Per unit of u times v: of all cameras, whichever was drawn from.
+// Per unit of u times v: of all cameras, whichever was sampled from.
 double pdf(const acdf::TableView& field, const Slice& slice, const double x[2]) {
     double sum = 0.0;
     for (int k = 0; k < 4; ++k) sum += slice.share[k] * field.pdf(slice.camera[k], x);
     return sum;
 }
 
-// u0 chooses the camera first; what is left of it draws.
+// u0 chooses the camera first; what is left of it samples.
 double sample(const acdf::TableView& field, const Slice& slice, double u0, double u1, double x[2]) {
     int k = 0;
     while (k < 3 && !(u0 < slice.share[k])) u0 -= slice.share[k++];
@@ -79,13 +79,13 @@ int main(int argc, char** argv) {
     std::mt19937_64 random(1);
     const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
     const int n = 10000, grid = 512;
-    double drawn = 0.0, even = 0.0, exact = 0.0, whole = 0.0;
+    double sampled = 0.0, even = 0.0, exact = 0.0, whole = 0.0;
     for (int i = 0; i < n; ++i) {
         const double u0 = uniform(), u1 = uniform();
         double x[2];
         const double per_area = sample(field, slice, u0, u1, x), r = radius(x);
         const double per_steradian = per_area * r * r * r; // what multiple importance sampling asks for
-        drawn += radiance(s, t, x[0], x[1]) / r / per_steradian / n;
+        sampled += radiance(s, t, x[0], x[1]) / r / per_steradian / n;
         const double y[2] = {2.0 * u0 - 1.0, 2.0 * u1 - 1.0}, q = radius(y);
         even += radiance(s, t, y[0], y[1]) / (q * q * q * q) * 4.0 / n;
     }
@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
         whole += pdf(field, slice, x) * area;
     }
     std::printf("irradiance at the point   %.2f\n", exact);
-    std::printf("10000 samples of the file %.2f\n", drawn);
+    std::printf("10000 samples of the file %.2f\n", sampled);
     std::printf("10000 even samples        %.2f\n", even);
     std::printf("the density's integral    %.3f\n", whole);
 }

@@ -31,16 +31,16 @@ int main(int argc, char** argv) {
     const std::uint32_t camera[2] = {5, 2}; // indices on s and t
     const double s = (camera[0] + 0.5) / 8, t = (camera[1] + 0.5) / 8;
     const int n = 1000;
-    double drawn = 0.0, even = 0.0;
+    double sampled = 0.0, even = 0.0;
     for (int i = 0; i < n; ++i) {
         const double u[2] = {uniform(), uniform()};
         double x[2];
         const double pdf = field.sample(camera, u, x); // x: u and v in [-1, 1]; pdf per unit of u times v
-        drawn += radiance(s, t, x[0], x[1]) / pdf / n;
+        sampled += radiance(s, t, x[0], x[1]) / pdf / n;
         even += radiance(s, t, 2 * u[0] - 1, 2 * u[1] - 1) * 4 / n;
     }
     const double expected = field.total() * field.share(camera);
     std::printf("the file's integral      %.2f\n", expected);
-    std::printf("1000 samples of the file %.2f\n", drawn);
+    std::printf("1000 samples of the file %.2f\n", sampled);
     std::printf("1000 even samples        %.2f\n", even);
 }

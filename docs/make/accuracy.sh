@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# accuracy.sh DATA [SECTION...]: writes the tables of docs/accuracy.md, and that of building in docs/performance.md, from the
-# programs' output.
+# accuracy.sh DATA [SECTION...]: writes the tables of docs/appendix/accuracy-*.md, the summary in docs/accuracy.md, and the table
+# in docs/appendix/performance-building.md, from the programs' output.
 # DATA holds probes/ and brdfs/. ACDF names the program (default: build/release/tools/acdf). Without sections all are
 # made, which takes an hour on two cores. Each table stands between <!-- NAME --> and <!-- /NAME --> in a page; what
 # the summary needs of the others is kept in RESULTS (default: build/accuracy).
@@ -10,13 +10,13 @@ data=$(cd "${1:?usage: docs/make/accuracy.sh DATA [SECTION...]}" && pwd)
 shift
 acdf=${ACDF:-$root/build/release/tools/acdf}
 results=${RESULTS:-$root/build/accuracy}
-sections=(e1 e1_fits e1_sizes e1_options e1_ratio octahedral e2 e3 e3_render e4_sizes e4_rivals e4_paper e4_bins e4_tiles e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden company company_exact company_draws rivals building summary)
+sections=(e1 e1_fits e1_sizes e1_options e1_ratio octahedral e2 e3 e3_render e4_sizes e4_baselines e4_paper e4_bins e4_tiles e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden partner partner_exact partner_draws baselines building summary)
 mkdir -p "$results"
 
 # Definitions for jq: rounding to three digits, and a value with its interval.
 jq_lib='def sig: if . == null then "–" elif . == 0 then "0" else . as $x | ((fabs|log10|floor) - 2) as $e | (if $e < 0 then (($x * pow(10; -$e) | round) / pow(10; -$e)) else (($x / pow(10; $e) | round) * pow(10; $e)) end) | tostring end;
 def interval: "\(.value|sig) (\(.low|sig)–\(.high|sig))";
-def told($figure): if .resolved then $figure | interval else "unsure" end;
+def shown($figure): if .resolved then $figure | interval else "unsure" end;
 def percent: "\(. * 1000 | round / 10) %";
 def size: if . == 0 then "–" elif . >= 1048576 then "\(. / 104857.6 | round / 10) MiB" else "\(. / 102.4 | round / 10) KiB" end;'
 
@@ -28,7 +28,7 @@ e1() {
     echo "|---|---|---|---|---|---|"
     while IFS='|' read -r text options; do
         # shellcheck disable=SC2086
-        line=$("$acdf" env "$probe" --projection angular --domain latlong -o "$results/e1.acdf" --force --quiet --json $options |
+        line=$("$acdf" env "$probe" --projection angular --domain latlong --filter nearest -o "$results/e1.acdf" --force --quiet --json $options |
             jq -r "$jq_lib"' " \(.bytes) | \(.cells) | \(.relative_variance|sig) | \(.kl_divergence|sig) | \(.max_weight|sig) |"')
         echo "| $text |$line"
     done <<'ROWS'
@@ -70,7 +70,7 @@ e2() {
 
 e3() { "$root/docs/make/brdf_tables.sh" "$data/brdfs" "$acdf"; }
 e4_sizes() { TABLES=sizes "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
-e4_rivals() { TABLES=rivals "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
+e4_baselines() { TABLES=baselines "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
 e4_paper() { TABLES=paper "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
 e4_bins() { TABLES=bins "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
 e4_tiles() { TABLES=tiles "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
@@ -85,7 +85,7 @@ render() {
     echo
     echo "| sampler | memory | above the horizon: mean, worst pixel | relative variance | median | gain, equal samples | gain, equal time | Sobol: relative variance | gain, equal samples |"
     echo "|---|---|---|---|---|---|---|---|---|"
-    jq -r "$jq_lib"' (.sobol.samplers | map({(.sampler): .}) | add) as $sobol | .samplers[] | "| `\(.sampler)` | \(.bytes|size) | \(.share_above_horizon|percent), \(.least_share_above_horizon|percent) | \(told(.relative_variance)) | \(.relative_variance_median|sig) | \(told(.equal_samples_gain)) | \(told(.equal_time_gain)) | \($sobol[.sampler] | told(.relative_variance)) | \($sobol[.sampler] | told(.equal_samples_gain)) |"' \
+    jq -r "$jq_lib"' (.sobol.samplers | map({(.sampler): .}) | add) as $sobol | .samplers[] | "| `\(.sampler)` | \(.bytes|size) | \(.share_above_horizon|percent), \(.least_share_above_horizon|percent) | \(shown(.relative_variance)) | \(.relative_variance_median|sig) | \(shown(.equal_samples_gain)) | \(shown(.equal_time_gain)) | \($sobol[.sampler] | shown(.relative_variance)) | \($sobol[.sampler] | shown(.equal_samples_gain)) |"' \
         "$results/$1.json"
 }
 e3_render() {
@@ -101,7 +101,7 @@ e6_cook() { render e6-cook-torrance e6-cook-torrance 24x24; }
 e6_nickel() { render e6-nickel e6-nickel 24x24; }
 e6_plastic() { render e6-plastic e6-plastic 24x24; }
 
-# E7: the scenes of E6, and one of them behind a wall, with samplers of the product and their rivals.
+# E7: the scenes of E6, and one of them behind a wall, with samplers of the product and their baselines.
 e7_samplers=('mis(local:1MB,brdf:64KiB)' 'product(local:1MB,brdf:64KiB)'
     'product(local:1MB --shape fast,brdf:64KiB)' 'mis(compensated,brdf:64KiB)'
     'mis(warp(local:1MB,brdf:64KiB),brdf:64KiB)' 'mis(tiles:12x12(brdf:64KiB),brdf:64KiB)' 'ris:8(local:1MB,brdf:64KiB)' 'ris:32(local:1MB,brdf:64KiB)')
@@ -136,24 +136,24 @@ hidden() {
     echo
     echo "| sampler | relative variance | gain, equal samples | gain, equal time |"
     echo "|---|---|---|---|"
-    jq -r "$jq_lib"' .nothing_hidden.samplers[] | "| `\(.sampler)` | \(told(.relative_variance)) | \(told(.equal_samples_gain)) | \(told(.equal_time_gain)) |"' \
+    jq -r "$jq_lib"' .nothing_hidden.samplers[] | "| `\(.sampler)` | \(shown(.relative_variance)) | \(shown(.equal_samples_gain)) | \(shown(.equal_time_gain)) |"' \
         "$results/hidden-grace.json"
 }
 
-# ---- files for a company ----------------------------------------------------------------------------------------
+# ---- files for an MIS partner ----------------------------------------------------------------------------------------
 
-# Everything that `acdf render` has for diffuse surfaces, beside files for a company of the cosine.
-company_samplers=('full-cdf' 'mis(full-cdf,cosine)' 'mis-compensated' 'tiles:32x16' 'ris:32' 'env:64KiB' 'local:1MB'
-    'mis(local:1MB,cosine)' 'mis(4*local:1MB,cosine)' 'mis(env:64KiB --with cosine --scene,cosine)'
-    'mis(local:1MB --with cosine,cosine)' 'mis(auto:local:1MB --with cosine,cosine)')
-company() { scenes company 24x18 20 e4-grace e4-stpeters e4-beach hidden-grace; }
+# Everything that `acdf render` has for diffuse surfaces, beside files for an MIS partner of the cosine.
+partner_samplers=('full-cdf' 'mis(full-cdf,cosine)' 'mis-compensated' 'tiles:32x16' 'ris:32' 'env:64KiB' 'local:1MB'
+    'mis(local:1MB,cosine)' 'mis(4*local:1MB,cosine)' 'mis(env:64KiB --mis cosine --scene,cosine)'
+    'mis(local:1MB --mis cosine,cosine)' 'mis(auto:local:1MB --mis cosine,cosine)')
+partner() { scenes partner 24x18 20 e4-grace e4-stpeters e4-beach hidden-grace; }
 
-company_exact() { ACDF=$acdf "${PYTHON:-/usr/bin/python3}" "$root/docs/make/company_exact.py" "$data"; }
-company_draws() { ACDF=$acdf "$root/docs/make/company_tables.sh" "$data" 12x9 24; }
+partner_exact() { ACDF=$acdf "${PYTHON:-/usr/bin/python3}" "$root/docs/make/partner_exact.py" "$data"; }
+partner_draws() { ACDF=$acdf "$root/docs/make/partner_tables.sh" "$data" 12x9 24; }
 
-# ---- rivals on the light itself -----------------------------------------------------------------------------------
+# ---- baselines on the light itself -----------------------------------------------------------------------------------
 
-rivals() {
+baselines() {
     "$acdf" sweep "$data/probes/noon_grass_1k.hdr" -o "$results/sweep" --force --quiet --json > "$results/sweep.json"
     echo "\`acdf sweep DATA/probes/noon_grass_1k.hdr -o out\`:"
     echo

@@ -1,8 +1,8 @@
 """What it takes to fit pixels that a program holds: after_decoding.py PROBE WIDTH [BUDGET]
 
 Reads a lat-long probe (Debian's python3-openimageio), enlarges it to WIDTH columns of half floats in memory, gives it to
-acdf.build_environment, and prints a row of a table in docs/performance.md: the processor seconds of all threads, of that
-call alone, and the peak memory of all, the pixels included. PYTHONPATH names the folder of the package acdf.
+acdf.build_environment, and prints a row of a table in docs/appendix/performance-building.md: the processor seconds of all
+threads, of that call alone, and the peak memory of all, the pixels included. PYTHONPATH names the folder of the package acdf.
 """
 
 import resource

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the BRDF table of docs/accuracy.md from a folder of BRDFs: docs/make/brdf_tables.sh BRDFS [ACDF]
+# Makes the BRDF table of docs/appendix/accuracy-brdf.md from a folder of BRDFs: docs/make/brdf_tables.sh BRDFS [ACDF]
 set -euo pipefail
 brdfs=$1
 acdf=${2:-build/release/tools/acdf}

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The table of docs/local.md between its marks fast-shape: docs/make/fast_shape.sh DATA [ACDF] prints the mean relative variance of
-# local files of both shapes.
+# fast_shape.sh DATA [ACDF]: prints the table of docs/appendix/local-shapes.md, the mean relative variance of local files
+# of both shapes.
 set -euo pipefail
 data=$1
 acdf=${2:-build/release/tools/acdf}

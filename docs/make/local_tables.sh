@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Makes the tables of local files in docs/accuracy.md from a folder of probes: docs/make/local_tables.sh PROBES [ACDF]
-# TABLES="sizes rivals bins tiles paper" chooses among them.
+# Makes the tables of docs/appendix/accuracy-local.md from a folder of probes: docs/make/local_tables.sh PROBES [ACDF]
+# TABLES="sizes baselines bins tiles paper" chooses among them.
 set -euo pipefail
 probes=$1
 acdf=${2:-build/release/tools/acdf}
-tables=${TABLES:-sizes rivals bins tiles paper}
+tables=${TABLES:-sizes baselines bins tiles paper}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -25,7 +25,7 @@ build() {
     local name=$1 file=$2 projection=$3
     shift 3
     "$acdf" local "$probes/$file" --projection "$projection" --shape small -o "$work/$name.acdf" --force --quiet "$@" > /dev/null
-    "$acdf" measure "$work/$name.acdf" --against "$probes/$file" --projection "$projection" --quiet --json ${rivals:+--rivals} \
+    "$acdf" measure "$work/$name.acdf" --against "$probes/$file" --projection "$projection" --quiet --json ${baselines:+--baselines} \
         > "$work/$name.json"
 }
 
@@ -52,12 +52,12 @@ sizes() {
     echo "$line | |"
 }
 
-rivals() {
+baselines() {
     echo "| probe | ours, 1 MB | full CDF | RIS, 32 candidates | 512 tiles × cosine on the fly | cosine hemisphere |"
     echo "|---|---|---|---|---|---|"
     while read -r name file projection; do
-        rivals=1 build "$name" "$file" "$projection" --budget 1MB
-        jq -r --arg n "$name" '"| " + $n + " | " + ([.relative_variance, (.rivals | .full_cdf, .resampling_32, .tiling_512, .cosine | .relative_variance)] | map(. * 1e5 | round / 1e5 | tostring) | join(" | ")) + " |"' "$work/$name.json"
+        baselines=1 build "$name" "$file" "$projection" --budget 1MB
+        jq -r --arg n "$name" '"| " + $n + " | " + ([.relative_variance, (.baselines | .full_cdf, .resampling_32, .tiling_512, .cosine | .relative_variance)] | map(. * 1e5 | round / 1e5 | tostring) | join(" | ")) + " |"' "$work/$name.json"
     done <<< "$list"
 }
 

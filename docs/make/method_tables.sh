@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# method_tables.sh PROBES: tables of environment files (docs/accuracy.md, docs/performance.md), from the probes in a folder, as Markdown on stdout.
+# method_tables.sh PROBES: tables of environment files (docs/appendix/accuracy-environment.md, performance-building.md), from the
+# probes in a folder, as Markdown on stdout.
 # ACDF names the program (default: build/release/tools/acdf). TABLES chooses some of: fits sizes options ratio building. The last
 # needs oiiotool, for maps of other sizes.
 set -euo pipefail
@@ -33,8 +34,8 @@ fits() {
     echo "| probe | uniform | cdf | cdf, eq. 4 as printed | cdf, 16 gradient knots | pdf | variance |"
     echo "|---|---|---|---|---|---|---|"
     columns=("--fit uniform" "--fit cdf --order z" "--fit cdf --order z --conditional mean" "--fit cdf --order z --gradient 16"
-        "--fit pdf" "")
-    for probe in city sunset studio courtyard; do row "$probe" "$probes/$probe.exr"; done
+        "--fit pdf" "--cells 4096")
+    for probe in city sunset studio courtyard; do row "$probe" "$probes/$probe.exr" --filter nearest; done
 }
 
 sizes() {
@@ -42,26 +43,27 @@ sizes() {
     echo "|---|---|---|---|---|---|---|"
     columns=("--budget 4KiB" "--budget 16KiB" "--budget 64KiB" "--budget 256KiB" "--budget 64KiB --max-weight 3"
         "--budget 64KiB --compress zlib")
-    for probe in "${six[@]}"; do row "${probe%.*}" "$probes/$probe"; done
+    for probe in "${six[@]}"; do row "${probe%.*}" "$probes/$probe" --filter nearest; done
 }
 
 # One row for each option of `acdf env`: what it does to a file of one probe. Seconds are of the processor, over all
 # threads, the reading of the probe and the exact measurement included.
 options() {
-    local map=$probes/courtyard.exr arguments numbers TIMEFORMAT='%U %S'
-    echo "| \`acdf env courtyard.exr\` with | bytes | cells | relative variance | largest weight | seconds |"
+    local map=$probes/courtyard.exr arguments numbers filter TIMEFORMAT='%U %S'
+    echo "| \`acdf env courtyard.exr --filter nearest\` with | bytes | cells | relative variance | largest weight | seconds |"
     echo "|---|---|---|---|---|---|"
     while read -r arguments; do
+        case $arguments in *--filter*) filter="" ;; *) filter="--filter nearest" ;; esac
         # shellcheck disable=SC2086
-        { time "$acdf" env "$map" $arguments -o "$work/x.acdf" --force --quiet --json >"$work/report"; } 2>"$work/time"
+        { time "$acdf" env "$map" $filter $arguments -o "$work/x.acdf" --force --quiet --json >"$work/report"; } 2>"$work/time"
         numbers=$(for key in bytes cells relative_variance max_weight; do
             sed -n "s/^  \"$key\": \([0-9.e+-]*\),*$/\1/p" "$work/report"
         done)
         # shellcheck disable=SC2086
-        printf '| %s | %d | %d | %.4g | %.3g | %.2f |\n' "$([ "$arguments" ] && echo "\`$arguments\`" || echo 'nothing: `--cells 4096`')" $numbers \
+        printf '| %s | %d | %d | %.4g | %.3g | %.2f |\n' "\`$arguments\`" $numbers \
             "$(awk '{ print $1 + $2 }' "$work/time")"
     done <<'LIST'
-
+--cells 4096
 --cells 1024
 --cells 16384
 --budget 16KiB
@@ -69,14 +71,14 @@ options() {
 --target-variance 0.05
 --target-variance 0.005
 --budget 64KiB --max-weight 3
---channel rgb
---channel max
---channel red
---channel green
---channel blue
---filter bilinear
---compress zlib
---threads 1
+--cells 4096 --channel rgb
+--cells 4096 --channel max
+--cells 4096 --channel red
+--cells 4096 --channel green
+--cells 4096 --channel blue
+--cells 4096 --filter bilinear
+--cells 4096 --compress zlib
+--cells 4096 --threads 1
 --fit uniform
 --fit cdf
 --fit cdf --order phi
@@ -99,12 +101,12 @@ ratio() {
     echo "|---|---|---|"
     for probe in "${six[@]}"; do
         for knots in 16 23 32 45 64 90 128 181 256 362 512; do
-            echo "$(field bytes "$probes/$probe" --fit cdf --knots "${knots}x$knots")" \
-                "$(field relative_variance "$probes/$probe" --fit cdf --knots "${knots}x$knots")"
+            echo "$(field bytes "$probes/$probe" --filter nearest --fit cdf --knots "${knots}x$knots")" \
+                "$(field relative_variance "$probes/$probe" --filter nearest --fit cdf --knots "${knots}x$knots")"
         done >"$work/points"
         line="| ${probe%.*}"
         for size in 16 64; do
-            goal=$(field relative_variance "$probes/$probe" --budget "${size}KiB")
+            goal=$(field relative_variance "$probes/$probe" --filter nearest --budget "${size}KiB")
             line+=" | $(awk -v goal="$goal" -v size=$((size * 1024)) '
                 $2 <= goal && NR > 1 && !done { share = log(v / goal) / log(v / $2)
                     printf "%.2f", b / size * exp(share * log($1 / b)); done = 1 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # pictures.sh DATA [NAME...]: the pictures of README.md and of the pages, into docs/figures. DATA holds probes/ and brdfs/.
-# Names: noise local_file brdf render sweep plot, which are all of them without; and places, which needs the files that
-# places.sh leaves in RESULTS (default: build/places). ACDF names the program (default:
+# Names: noise local_file brdf render sweep plot, which are all of them without; and visibility, which needs the files that
+# visibility.sh leaves in RESULTS (default: build/visibility). ACDF names the program (default:
 # build/release/tools/acdf). Needs oiiotool, jq and, for `sweep`, chromium; tools/packages.txt lists them.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -9,17 +9,18 @@ data=$(cd "${1:?usage: docs/make/pictures.sh DATA [NAME...]}" && pwd)
 shift
 acdf=${ACDF:-$root/build/release/tools/acdf}
 figures=$root/docs/figures
-results=${RESULTS:-$root/build/places}
+results=${RESULTS:-$root/build/visibility}
 work=$(mktemp -d)
 trap 'rm -rf -- "$work"' EXIT
 
-# panel IN OUT TITLE DETAILS: a picture with two lines of text below it
+# panel IN OUT TITLE DETAILS: a picture with two lines of text below it, larger below a wide one
 panel() {
-    local width height text="font=DejaVuSans:color=0.12,0.12,0.12:xalign=center"
+    local width height scale text="font=DejaVuSans:color=0.12,0.12,0.12:xalign=center"
     read -r width height < <(oiiotool --info "$1" | sed -n "s/.*: *\([0-9]*\) x *\([0-9]*\),.*/\1 \2/p")
-    oiiotool "$1" --ch R,G,B --pattern constant:color=1,1,1 "$((width + 8))x$((height + 52))" 3 --paste +4+4 \
-        --text:x=$((width / 2 + 4)):y=$((height + 24)):size=15:"$text" "$3" \
-        --text:x=$((width / 2 + 4)):y=$((height + 43)):size=12:"$text" "$4" -d uint8 -o "$2"
+    scale=$((width < 480 ? 10 : width / 40))
+    oiiotool "$1" --ch R,G,B --pattern constant:color=1,1,1 "$((width + 8))x$((height + 52 * scale / 10))" 3 --paste +4+4 \
+        --text:x=$((width / 2 + 4)):y=$((height + 24 * scale / 10)):size=$((3 * scale / 2)):"$text" "$3" \
+        --text:x=$((width / 2 + 4)):y=$((height + 43 * scale / 10)):size=$((12 * scale / 10)):"$text" "$4" -d uint8 -o "$2"
 }
 
 side_by_side() { # OUT IN...
@@ -33,23 +34,34 @@ figure_of() {
     printf '%.3g' "$(jq --arg s "$1" ".samplers[] | select(.sampler == \$s) | $2" "$work/render/render.json")"
 }
 
-# lit SCENE SAMPLES SAMPLER...: renders a scene into $work/render
+# lit SCENE SAMPLES SAMPLER...: renders a scene into $work/render, of `size` pixels where that is set
 lit() {
     local scene=$1 samples=$2 options=() sampler
     shift 2
     for sampler in "$@"; do options+=(--sampler "$sampler"); done
-    "$acdf" render --scene "$root/tools/render/scenes/$scene.json" --data "$data" --size 320x240 --samples "$samples" --seeds 4 \
+    "$acdf" render --scene "$root/tools/render/scenes/$scene.json" --data "$data" --size "${size:-320x240}" --samples "$samples" --seeds 4 \
         --sequence independent --no-reference --no-timing --quiet --force -o "$work/render" "${options[@]}" > /dev/null
 }
 
-# The light of Grace Cathedral on matte surfaces: as many samples of the full table and of a file.
+# The light of Grace Cathedral on matte surfaces: as many samples of the full table and of a file. README.md has the
+# variances and their ratio below the picture.
 noise() {
-    lit e4-grace 16 full-cdf local:1MB
-    panel "$work/render/full-cdf.png" "$work/1.png" "full-resolution CDF, 4 MiB" \
-        "16 samples a pixel, relative variance $(figure_of full-cdf .relative_variance.value)"
-    panel "$work/render/local-1MB.png" "$work/2.png" "acdf local, 1 MB" \
-        "16 samples a pixel, relative variance $(figure_of local:1MB .relative_variance.value)"
+    size=600x450 lit e4-grace 16 full-cdf local:1MB
+    local full local
+    full=$(figure_of full-cdf .relative_variance.value) local=$(figure_of local:1MB .relative_variance.value)
+    panel "$work/render/full-cdf.png" "$work/1.png" "full-resolution CDF, 4 MiB" "16 samples a pixel, relative variance $full"
+    panel "$work/render/local-1MB.png" "$work/2.png" "acdf local, 1 MB" "16 samples a pixel, relative variance $local"
     side_by_side noise "$work"/[12].png
+    awk -v full="$full" -v mine="$local" '
+        $0 == "<!-- noise -->" {
+            print
+            printf "**%.1f times less variance: %s instead of %s.**\n", full / mine, mine, full
+            inside = 1
+            next
+        }
+        $0 == "<!-- /noise -->" { inside = 0 }
+        !inside { print }' "$root/README.md" > "$work/README.md"
+    cat "$work/README.md" > "$root/README.md"
 }
 
 # The densities of one local file for two normals.
@@ -62,7 +74,7 @@ local_file() {
 
 # The lobe of one BRDF file for two views.
 brdf() {
-    "$acdf" brdf "$data/brdfs/nickel.binary" -o "$work/nickel.acdf" --force --quiet
+    "$acdf" brdf "$data/brdfs/nickel.binary" --budget 64KiB -o "$work/nickel.acdf" --force --quiet
     "$acdf" plot "$work/nickel.acdf" -o "$work/1.png" --view 30 --width 512 --range 1e-4:100 --force --quiet
     "$acdf" plot "$work/nickel.acdf" -o "$work/2.png" --view 75 --width 512 --range 1e-4:100 --force --quiet
     side_by_side brdf "$work"/[12].png
@@ -76,10 +88,10 @@ render() {
     side_by_side render "$work"/{variance,gain}.png
 }
 
-# The top of a sweep's page.
+# A sweep's page down to its last plot, as wide as a column of text, so that it can be read there.
 sweep() {
     (cd "$data/probes" && "$acdf" sweep noon_grass_1k.hdr -o "$work/sweep" --force --quiet > /dev/null)
-    chromium --headless --no-sandbox --disable-gpu --disable-background-networking --hide-scrollbars --window-size=1100,1000 \
+    chromium --headless --no-sandbox --disable-gpu --disable-background-networking --hide-scrollbars --window-size=840,2500 \
         --user-data-dir="$work/profile" --screenshot="$figures/sweep.png" "file://$work/sweep/report.html" 2> "$work/log"
 }
 
@@ -114,15 +126,13 @@ equal_time() {
         shown+=("$work/panel-$i.png")
         i=$((i + 1))
     done
-    side_by_side "places-$scene" "${shown[@]}"
+    side_by_side "visibility-$scene" "${shown[@]}"
 }
 
-# A room at equal time, and the cells of its places.
-places() {
-    "$acdf" plot "$results/room-places.acdf" --scene "$results/room.obj" --from=-2.6,-3.4,1.9 --to 1.2,2,0.6 --force --quiet \
-        -o "$figures/places-cells.png"
-    equal_time room "file:$results/room-local.acdf=local:1MB" portals=portals visibility:32x16=visibility \
-        "file:$results/room-places.acdf=places:4MB"
+# A room at equal time.
+visibility() {
+    equal_time room "file:$results/room-local.acdf=local:1MB" portals=portals visibility-cache:32x16=visibility-cache \
+        "file:$results/room-visibility.acdf=visibility:4MB"
 }
 
 pictures=("$@")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # product_checks.sh BUILD DATA: checks acdf/product.h at 200 shading points for each of eight probes, in both shapes, and eleven BRDFs, and writes
-# the table of docs/product.md. BUILD: a release build with -DACDF_BUILD_BENCHMARKS=ON; DATA holds probes/ and brdfs/.
+# the table of docs/appendix/product-checks.md. BUILD: a release build with -DACDF_BUILD_BENCHMARKS=ON; DATA holds probes/ and brdfs/.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 build=$(cd "${1:?usage: product_checks.sh BUILD DATA}" && pwd)
@@ -38,7 +38,7 @@ file() { # NAME BRDF
     row "$1" "$work/brdf.acdf"
 }
 {
-    echo "| BRDF | pairs | integral of the light's part less 1, largest | samples with another \`pdf\` | light without density | means beyond 4 standard errors |"
+    echo "| BRDF | pairs | integral of the light's part less 1, largest | samples with another \`pdf\` | light without pdf | means beyond 4 standard errors |"
     echo "|---|---|---|---|---|---|"
     file Lambert lambert
     for alpha in 0.05 0.2 0.7; do row "GGX, α $alpha" $alpha $alpha; done

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# shader_table.sh BUILD PROBE BRDF...: the tables of docs/shaders.md, of files of 64 KiB.
+# shader_table.sh BUILD PROBE BRDF...: the tables of docs/appendix/shaders.md, of files of 64 KiB.
 set -euo pipefail
 build=$(cd "$1" && pwd) probe=$2
 shift 2

@@ -64,13 +64,13 @@ typedef enum AcdfAxisMeasure {
 } AcdfAxisMeasure;
 
 /* What a file was made to be combined with, by multiple importance sampling (SPEC.md §5.8). */
-typedef enum AcdfCompanyKind {
-    ACDF_COMPANY_NONE = 0,
-    ACDF_COMPANY_COSINE = 1, /* cos / pi around the normal */
-    ACDF_COMPANY_BRDF = 2,   /* lobes as BRDFs have them: cosine, and GGX of several widths */
-    ACDF_COMPANY_MEAN = 3,   /* as if it were the same everywhere: Karlik et al. 2019 */
-    ACDF_COMPANY_TABLE = 4   /* of a table: another table over the same axes */
-} AcdfCompanyKind;
+typedef enum AcdfPartnerKind {
+    ACDF_PARTNER_NONE = 0,
+    ACDF_PARTNER_COSINE = 1, /* cos / pi around the normal */
+    ACDF_PARTNER_BRDF = 2,   /* lobes as BRDFs have them: cosine, and GGX of several widths */
+    ACDF_PARTNER_MEAN = 3,   /* as if it were the same everywhere: Karlik et al. 2019 */
+    ACDF_PARTNER_TABLE = 4   /* of a table: another table over the same axes */
+} AcdfPartnerKind;
 
 typedef enum AcdfHeuristic {
     ACDF_HEURISTIC_BALANCE = 0, /* n_i p_i over their sum */
@@ -87,9 +87,9 @@ typedef enum AcdfHeuristic {
 #define ACDF_CHUNK_SUMS ACDF_FOURCC('S', 'U', 'M', 'S')
 #define ACDF_CHUNK_GRID ACDF_FOURCC('G', 'R', 'I', 'D')
 #define ACDF_CHUNK_LOCAL ACDF_FOURCC('L', 'O', 'C', 'L')
-#define ACDF_CHUNK_COMPANY ACDF_FOURCC('C', 'O', 'M', 'P')
+#define ACDF_CHUNK_PARTNER ACDF_FOURCC('C', 'O', 'M', 'P')
 #define ACDF_CHUNK_VIEWS ACDF_FOURCC('V', 'I', 'E', 'W')
-#define ACDF_CHUNK_PLACES ACDF_FOURCC('P', 'L', 'A', 'C')
+#define ACDF_CHUNK_VISIBILITY ACDF_FOURCC('P', 'L', 'A', 'C')
 #define ACDF_CHUNK_PORTALS ACDF_FOURCC('P', 'O', 'R', 'T')
 #define ACDF_CHUNK_HALVINGS ACDF_FOURCC('H', 'A', 'L', 'V')
 
@@ -221,42 +221,42 @@ typedef struct AcdfSplit {
 #define ACDF_FAST_WHOLE 32767u /* the last cumulative value of groups */
 #define ACDF_FAST_MOST_SHIFT 30u
 
-/* Chunk LOCL, of local environments: this, then its lights. */
+/* Chunk LOCL, of local environments: this, then its bright tiles. */
 typedef struct AcdfLocalHeader {
-    float cosine_share; /* in [0, 1): of samples drawn around the normal with density cos / pi */
-    uint32_t light_count;
+    float cosine_share; /* in [0, 1): of samples taken around the normal with density cos / pi */
+    uint32_t bright_tile_count;
 } AcdfLocalHeader;
 
 /* A tile so small and bright that its weight is worked out for each normal (SPEC.md §6.7). */
-typedef struct AcdfLight {
+typedef struct AcdfBrightTile {
     float direction[3]; /* unit, to its middle */
     float radius;       /* no point of it is farther from `direction`, > 0 */
     float share;        /* of `total`, > 0 */
     uint32_t tile;      /* its number; ascending */
     uint32_t low[2];    /* its box: positions on the axes 0 and 1 */
     uint32_t high[2];
-} AcdfLight;
+} AcdfBrightTile;
 
 /* Chunk COMP of a file that is not to be used alone: this, then `record_count` records (0, or one a bin). */
-typedef struct AcdfCompany {
-    uint32_t kind;           /* AcdfCompanyKind, not 0 */
-    uint32_t heuristic;      /* AcdfHeuristic */
-    float share;             /* of the samples, in (0, 1): what the fit was told that this file draws */
-    float recommended_share; /* in (0, 1]: of the samples that this file should draw, in the mean */
+typedef struct AcdfPartner {
+    uint32_t kind;                 /* AcdfPartnerKind, not 0 */
+    uint32_t heuristic;            /* AcdfHeuristic */
+    float share;                   /* of the samples, in (0, 1): what the fit was told that this file samples */
+    float recommended_light_share; /* in (0, 1]: of the samples that this file should sample, in the mean */
     uint32_t record_count;
     uint32_t reserved; /* 0 */
-} AcdfCompany;
+} AcdfPartner;
 
-typedef struct AcdfCompanyRecord {
-    float recommended_share; /* of the bin, in (0, 1] */
-    float flux;              /* of local environments: irradiance of the bin over `total`; else 0 */
-} AcdfCompanyRecord;
+typedef struct AcdfPartnerRecord {
+    float recommended_light_share; /* of the bin, in (0, 1] */
+    float flux;                    /* of local environments: irradiance of the bin over `total`; else 0 */
+} AcdfPartnerRecord;
 
-/* Chunk PLAC, of local environments: what of the light reaches a place (SPEC.md §5.9). This, then `split_count`
+/* Chunk PLAC, of local environments: what of the light reaches a position (SPEC.md §5.9). This, then `split_count`
  * splits, then 1 + `further_sets` sets of columns, a uint16 for each split of TILE, its column in a row or
  * ACDF_NO_COLUMN, then, where there are further sets, a uint16 for each row, its set, then `row_count` rows of
- * 1 + lights + `column_count` bytes: codes of visibility of the mixture and of each light, and of odds. */
-typedef struct AcdfPlaces {
+ * 1 + bright tiles + `column_count` bytes: codes of visibility of the mixture and of each light, and of odds. */
+typedef struct AcdfVisibility {
     uint32_t split_count;
     uint32_t row_count;
     uint32_t column_count; /* of each set */
@@ -264,20 +264,20 @@ typedef struct AcdfPlaces {
     float low[3];          /* the box of all cells */
     float high[3];         /* above `low` */
     float transform[3][4]; /* from positions in the scene to those of cells: x' = t[0] x + t[1] y + t[2] z + t[3] */
-} AcdfPlaces;
+} AcdfVisibility;
 
 /* A split of a cell in two. Splits stand in preorder: the lower part, if it is a split, follows at once. */
-typedef struct AcdfPlaceSplit {
+typedef struct AcdfVisibilitySplit {
     float position;
     float blend; /* on both sides of it the two parts are mixed, linearly, as far as this */
     uint32_t
         lower; /* bits 0-2: axis, of the position or (3 to 5) the normal; bits 3-31: the lower part, as `upper` */
-    uint32_t upper; /* a later split, or ACDF_PLACE_ROW | a row */
-} AcdfPlaceSplit;
+    uint32_t upper; /* a later split, or ACDF_VISIBILITY_ROW | a row */
+} AcdfVisibilitySplit;
 
 #define ACDF_NO_COLUMN 0xFFFFu
-#define ACDF_PLACE_ROW 0x10000000u
-#define ACDF_MAX_PLACE_SPLITS_DEEP 64u /* on a path */
+#define ACDF_VISIBILITY_ROW 0x10000000u
+#define ACDF_MAX_VISIBILITY_DEPTH 64u /* on a path */
 
 /* Chunk PORT, of local environments with PLAC: rectangles that light comes through (SPEC.md §5.10). This, then
  * `portal_count` portals, then `map_count` maps, then for each map (`size` + 1)^2 uint32, its light below and left
@@ -290,7 +290,7 @@ typedef struct AcdfPortals {
     uint32_t pieces;       /* that a portal is divided into along each side, 1 to ACDF_MAX_PORTAL_PIECES */
 } AcdfPortals;
 
-/* A rectangle among the cells of places. */
+/* A rectangle among the cells of visibility. */
 typedef struct AcdfPortal {
     float corner[3];
     float sides[2]; /* lengths, along axes 0 and 1 of the map */
@@ -312,7 +312,7 @@ typedef struct AcdfPortalMap {
 #define ACDF_TILE_FLAG 0x8000u
 #define ACDF_MAX_TILES 32768u
 #define ACDF_MAX_SPLITS_DEEP 48u /* on a path, so that no product of weights underflows */
-#define ACDF_MAX_LIGHTS 64u
+#define ACDF_MAX_BRIGHT_TILES 64u
 
 /* Chunk VIEW of a BRDF (SPEC.md §6.8): this, then `theta_count` f32, sqrt(1 - cos(theta_o)) of the stored views. */
 typedef struct AcdfViews {
@@ -345,12 +345,12 @@ ACDF_STATIC_ASSERT(sizeof(AcdfPlanes) == 44);
 ACDF_STATIC_ASSERT(sizeof(AcdfTiles) == 528);
 ACDF_STATIC_ASSERT(sizeof(AcdfSplit) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalHeader) == 8);
-ACDF_STATIC_ASSERT(sizeof(AcdfLight) == 40);
+ACDF_STATIC_ASSERT(sizeof(AcdfBrightTile) == 40);
 ACDF_STATIC_ASSERT(sizeof(AcdfViews) == 16);
-ACDF_STATIC_ASSERT(sizeof(AcdfCompany) == 24);
-ACDF_STATIC_ASSERT(sizeof(AcdfCompanyRecord) == 8);
-ACDF_STATIC_ASSERT(sizeof(AcdfPlaces) == 88);
-ACDF_STATIC_ASSERT(sizeof(AcdfPlaceSplit) == 16);
+ACDF_STATIC_ASSERT(sizeof(AcdfPartner) == 24);
+ACDF_STATIC_ASSERT(sizeof(AcdfPartnerRecord) == 8);
+ACDF_STATIC_ASSERT(sizeof(AcdfVisibility) == 88);
+ACDF_STATIC_ASSERT(sizeof(AcdfVisibilitySplit) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortals) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortal) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortalMap) == 40);

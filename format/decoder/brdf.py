@@ -5,7 +5,7 @@ import struct
 from .description import NOT_STORED, PI, is_axis
 from .refused import require
 from .sphere import NOTHING, a, clamp, direction_of, f32, pdf32, random_number, sin_cos
-from .tree import fraction_drawn, slope
+from .tree import fraction_sampled, slope
 
 
 def read_views(chunk, d):
@@ -155,10 +155,10 @@ class Brdf:
         box, s = self.whole()
         if view.mixture is not None:  # step 5
             tile, p = self.tiles.draw(view.mixture, u)
-            p = self.tiles.draw_within(self.tree, tile, p, u, box, s)
+            p = self.tiles.sample_within(self.tree, tile, p, u, box, s)
         else:
             p = self.tree.draw(view.tree, u, box, s)
-        t = [clamp(fraction_drawn(u[i], s[i]), 2.0**-30, 1 - 2.0**-30) for i in (0, 1)]
+        t = [clamp(fraction_sampled(u[i], s[i]), 2.0**-30, 1 - 2.0**-30) for i in (0, 1)]
         for _ in range(32):  # step 6
             x, y = (low + ti * (high - low) for ti, (low, high) in zip(t, box))
             wi = self.reflected(view, x, y, sign)

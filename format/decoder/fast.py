@@ -91,10 +91,10 @@ class FastTiles(Splits):
     def draw(self, mixture, u):
         a = self.weights(mixture)
         masses = [sum(ak * self.groups[row][g] for row, ak in a) for g in range(len(self.groups[0]))]
-        g, u[0] = drawn(masses, u[0])
+        g, u[0] = sampled(masses, u[0])
         s, b = self.in_group(a, g)
         tiles = range(GROUP * g, min(GROUP * g + GROUP, self.count))
-        i, u[1] = drawn([self.in_tile(b, tile) for tile in tiles], u[1])
+        i, u[1] = sampled([self.in_tile(b, tile) for tile in tiles], u[1])
         return tiles[i], self.part(a, s, b, self.in_tile(b, tiles[i]))
 
     def find(self, mixture, square):
@@ -112,10 +112,10 @@ class FastTiles(Splits):
             low, high = box[axis]
             box[axis] = [low + i * 2**k, min(high, low + (i + 1) * 2**k)]
 
-    def draw_within(self, tree, tile, p, u, box, s):
+    def sample_within(self, tree, tile, p, u, box, s):
         _, lines, cells = self.grids[tile]
-        line, u[1] = drawn(lines, u[1])
-        column, u[0] = drawn(cells[line], u[0])
+        line, u[1] = sampled(lines, u[1])
+        column, u[0] = sampled(cells[line], u[0])
         self.narrow(tile, (column, line), box)
         return max(p * (float(lines[line] * cells[line][column]) * (1 / 65025)), LEAST)
 
@@ -127,7 +127,7 @@ class FastTiles(Splits):
         return max(p * (float(inside) * (1 / 65025)), LEAST) if inside > 0 else 0.0
 
 
-def drawn(parts, u):
+def sampled(parts, u):
     """The first of some integers at which their sum is above u times the whole, and what is left of u."""
     whole = float(sum(parts))
     x = min(u * whole, math.nextafter(whole, 0.0))

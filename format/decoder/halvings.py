@@ -79,7 +79,7 @@ class Node:
 
 
 class Halvings:
-    """Chunk HALV. What Tree is to curves: `draw` and `find` change `u`, `box` and, of `find`, `strata`, by axis, to those
+    """Chunk HALV. What Tree is to curves: `sample` and `find` change `u`, `box` and, of `find`, `strata`, by axis, to those
     of the cell. The other arguments are those of Tree."""
 
     def __init__(self, data, resolutions):

@@ -1,6 +1,6 @@
 """SPEC.md §2.1: from the chunks of a file to the view of its kind."""
 from .brdf import Brdf
-from .company import Company
+from .partner import Partner
 from .container import BRDF, ENVIRONMENT, LOCAL
 from .description import NOT_STORED
 from .fast import FastTiles
@@ -16,8 +16,8 @@ from .tree import Tree, check_tree
 
 def view_of(container, d):
     view = sampler_of(container, d)
-    company = container.payloads.get(b"COMP")
-    view.company = None if company is None else Company(company, container.kind, d.bin_count)
+    partner = container.payloads.get(b"COMP")
+    view.partner = None if partner is None else Partner(partner, container.kind, d.bin_count)
     return view
 
 

@@ -6,7 +6,7 @@ from .description import NOT_STORED, PI, check_sphere_axes, is_axis
 from .refused import require
 from .sphere import (NOTHING, Environment, Sphere, clamp, direction_of, f32, of_unit_length, random_number,
                      sin_cos)
-from .places import Places
+from .visibility import Visibility
 from .portals import Portals
 from .square import grid_of
 from .tiles import sum_of
@@ -20,22 +20,22 @@ class Light:
 
 
 def read_local_chunk(data, tiles, bins):
-    """§5.7. Returns the cosine's share and the lights."""
+    """§5.7. Returns the cosine's share and the bright tiles."""
     require(data is not None and len(data) >= 8, 7005)
     sigma, count = struct.unpack_from("<fI", data)
     require(count <= 64 and len(data) == 8 + 40 * count, 7005)
     require(0 <= sigma < 1, 7005)
-    lights = [Light(data[8 + 40 * k:48 + 40 * k]) for k in range(count)]
-    for k, light in enumerate(lights):
+    bright_tiles = [Light(data[8 + 40 * k:48 + 40 * k]) for k in range(count)]
+    for k, light in enumerate(bright_tiles):
         square = sum_of([x * x for x in light.direction])
         require(tiles is not None and light.tile < tiles.count, 7006)
-        require(k == 0 or light.tile > lights[k - 1].tile, 7006)
+        require(k == 0 or light.tile > bright_tiles[k - 1].tile, 7006)
         require(abs(square - 1) < 0.001 and 0 < light.radius <= 2, 7006)
         require(0 < light.share < math.inf and light.box == tiles.boxes[light.tile], 7006)
         for root, share in bins:
             if root != NOT_STORED and share > 0:
                 require(tiles.is_dark(root, light.tile), 7007)
-    return sigma, lights
+    return sigma, bright_tiles
 
 
 def read_normals(axes, bin_count):
@@ -91,23 +91,23 @@ def octahedral_bins(N, n):
 
 
 class Point:
-    """What a normal draws from: `tree` (a root), or `mixture` and `lights` (weights), or nothing."""
+    """What a normal samples from: `tree` (a root), or `mixture` and `bright tiles` (weights), or nothing."""
 
     tree = mixture = None
     cells = ()  # of its position
-    windows = None
+    visible_portals = None
 
 
 class Local:
-    def __init__(self, tree, d, tiles, chunk, places=None, portals=None):
+    def __init__(self, tree, d, tiles, chunk, visibility=None, portals=None):
         check_sphere_axes(d)
         self.N, self.grid = read_normals(d.axes, d.bin_count)
-        self.sigma, self.lights = read_local_chunk(chunk, tiles, d.bins)
+        self.sigma, self.bright_tiles = read_local_chunk(chunk, tiles, d.bins)
         self.tree, self.tiles, self.bins = tree, tiles, d.bins
         self.environment = Environment(tree, 0, grid_of(d))
         self.sphere = self.environment.sphere
-        self.places = None if places is None else Places(places, tiles, len(self.lights))
-        self.portals = None if portals is None else Portals(portals, self.places)
+        self.visibility = None if visibility is None else Visibility(visibility, tiles, len(self.bright_tiles))
+        self.portals = None if portals is None else Portals(portals, self.visibility)
 
     def point(self, normal, position=None):
         out, n = Point(), direction_of(normal)
@@ -125,20 +125,20 @@ class Local:
             return out
         mixture = [(self.bins[b][0], m * self.bins[b][1]) for b, m in served]
         self.weigh(out, [(row, w) for row, w in mixture if w > 0])
-        if position is not None and self.places is not None and out.mixture is not None:
-            self.look_from(out, self.places.cells(position, n))
+        if position is not None and self.visibility is not None and out.mixture is not None:
+            self.look_from(out, self.visibility.cells(position, n))
             if self.portals is not None and out.cells:
-                out.windows = self.portals.windows(out.cells, self.places.coordinates(position, n))
+                out.visible_portals = self.portals.visible_portals(out.cells, self.visibility.coordinates(position, n))
         return out
 
     def look_from(self, out, cells):
-        """§6.11: the weights as the place sees them."""
+        """§6.11: the weights as the position sees them."""
         if not cells:
             return
         out.cells = cells
-        visible = Places.visibility(cells, 0)
+        visible = Visibility.visibility(cells, 0)
         out.mixture = [(row, w * visible) for row, w in out.mixture]
-        out.weights = [w * Places.visibility(cells, 1 + k) for k, w in enumerate(out.weights)]
+        out.weights = [w * Visibility.visibility(cells, 1 + k) for k, w in enumerate(out.weights)]
         out.light_sum, out.row_sum = sum_of(out.weights), sum_of([w for _, w in out.mixture])
         out.S = out.light_sum + out.row_sum
 
@@ -152,7 +152,7 @@ class Local:
         factor = self.N / (abs(n[0]) + abs(n[1]) + abs(n[2])) if self.N else 1 / length
         scaled = [factor * x for x in n]
         weights = []
-        for light in self.lights:
+        for light in self.bright_tiles:
             h = sum_of([x * d for x, d in zip(scaled, light.direction)])
             reach = light.radius * (factor * length)
             weights.append(light.share * h if h >= reach else 0.0 if h <= -reach else
@@ -163,7 +163,7 @@ class Local:
             out.mixture, out.weights = mixture, weights
 
     def draw(self, point, u, box, s):
-        """Drawing from lights and mixture."""
+        """Sampling from bright tiles and mixture."""
         x = u[0] * point.S
         if x < point.light_sum or not point.mixture:
             shining = [k for k, w in enumerate(point.weights) if w > 0]
@@ -172,30 +172,30 @@ class Local:
                 x, k = x - point.weights[k], shining.pop(0)
             u[0] = clamp(x / point.weights[k], 0, 1)
             p = max(point.weights[k] / point.S, LEAST)
-            return self.tiles.draw_within(self.tree, self.lights[k].tile, p, u, box, s)
+            return self.tiles.sample_within(self.tree, self.bright_tiles[k].tile, p, u, box, s)
         u[0] = clamp((x - point.light_sum) / (point.S - point.light_sum), 0, 1)
-        tile, q = (self.places.draw(point.mixture, point.cells, u) if point.cells else
+        tile, q = (self.visibility.draw(point.mixture, point.cells, u) if point.cells else
                    self.tiles.draw(point.mixture, u))
         p = max(point.row_sum / point.S * q, LEAST)
-        return self.tiles.draw_within(self.tree, tile, p, u, box, s)
+        return self.tiles.sample_within(self.tree, tile, p, u, box, s)
 
     def find(self, point, square, box, s):
         """The cell of a direction."""
-        tile, q = (self.places.find(point.mixture, point.cells, square) if point.cells else
+        tile, q = (self.visibility.find(point.mixture, point.cells, square) if point.cells else
                    self.tiles.find(point.mixture, square))
         if q > 0:
             p = max(point.row_sum / point.S * q, LEAST)
         else:
-            weight = sum_of([w for w, light in zip(point.weights, self.lights) if light.tile == tile])
+            weight = sum_of([w for w, light in zip(point.weights, self.bright_tiles) if light.tile == tile])
             if not weight > 0:
                 return 0.0
             p = max(weight / point.S, LEAST)
         return self.tiles.find_within(self.tree, tile, p, square, box, s)
 
     def light_pdf(self, point, v):
-        """p_L: of rows, and of windows where the position sees any."""
+        """p_L: of rows, and of visible_portals where the position sees any."""
         row = self.row_pdf(point, v)
-        return row if point.windows is None else point.windows.density(v, row)
+        return row if point.visible_portals is None else point.visible_portals.density(v, row)
 
     def row_pdf(self, point, v):
         """Steps 1 and 2 of the density of a direction."""
@@ -232,17 +232,17 @@ class Local:
         return (*v, self.density(point, v, light))
 
     def draw_light(self, point, u):
-        """By rows or through windows: a direction and its p_L."""
-        if point.windows is None:
-            return self.draw_row(point, u)
-        share = point.windows.share
+        """By rows or through visible_portals: a direction and its p_L."""
+        if point.visible_portals is None:
+            return self.sample_row(point, u)
+        share = point.visible_portals.share
         if u[0] < share:
-            v = self.draw_row(point, [clamp(u[0] / share, 0, 1), u[1]])[:3]
+            v = self.sample_row(point, [clamp(u[0] / share, 0, 1), u[1]])[:3]
         else:
-            v = point.windows.draw([clamp((u[0] - share) / (1 - share), 0, 1), u[1]])
+            v = point.visible_portals.draw([clamp((u[0] - share) / (1 - share), 0, 1), u[1]])
         return (*v, self.light_pdf(point, v))
 
-    def draw_row(self, point, u):
+    def sample_row(self, point, u):
         box, s = self.sphere.whole()
         p = (self.draw(point, u, box, s) if point.mixture is not None else
              self.tree.draw(point.tree, u, box, s))

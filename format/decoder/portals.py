@@ -30,14 +30,14 @@ class Map:
 
 
 class Portals:
-    def __init__(self, data, places):
-        require(places is not None and len(data) >= 16, 7016)
+    def __init__(self, data, visibility):
+        require(visibility is not None and len(data) >= 16, 7016)
         count, map_count, self.N, self.K = struct.unpack_from("<4I", data)
         require(1 <= count <= 8 and 1 <= map_count <= count and 1 <= self.N <= 4096 and 1 <= self.K <= 4, 7016)
         maps_at = 16 + 24 * count
         sums_at, corners = maps_at + 40 * map_count, (self.N + 1)**2
         rows_at, width = sums_at + 4 * map_count * corners, 1 + count * self.K**2
-        require(len(data) == rows_at + width * len(places.rows), 7016)
+        require(len(data) == rows_at + width * len(visibility.rows), 7016)
         self.portals = [Portal(data[16 + 24 * i:40 + 24 * i]) for i in range(count)]
         for portal in self.portals:
             require(all(math.isfinite(x) for x in portal.corner) and portal.map < map_count, 7017)
@@ -52,7 +52,7 @@ class Portals:
                 require(all(a <= b for a, b in zip(now, now[1:])), 7019)
                 steps = [a - b for a, b in zip(now, before)]
                 require(all(a <= b for a, b in zip(steps, steps[1:])), 7019)
-        for r, row in enumerate(places.rows):
+        for r, row in enumerate(visibility.rows):
             row.portals = data[rows_at + width * r:rows_at + width * (r + 1)]
 
     def bend(self, t):
@@ -72,17 +72,17 @@ class Portals:
         upper = above[i] + (u - i) * (above[i + 1] - above[i])
         return lower + (v - j) * (upper - lower)
 
-    def windows(self, cells, x):
-        """What a place, x[0] to x[5], sees; None where it draws by its row alone."""
+    def visible_portals(self, cells, x):
+        """What a position, x[0] to x[5], sees; None where it samples by its row alone."""
         share = sum_of([a * ((row.portals[0] + 1) / 256) for row, a in cells])
         if not share < 1:
             return None
-        seen = [Window(self, k, cells, x) for k in range(len(self.portals))]
-        seen = [window for window in seen if 0 < window.weight < math.inf]
-        return Windows(share, seen) if seen else None
+        seen = [VisiblePortal(self, k, cells, x) for k in range(len(self.portals))]
+        seen = [visible_portal for visible_portal in seen if 0 < visible_portal.weight < math.inf]
+        return VisiblePortals(share, seen) if seen else None
 
 
-class Window:
+class VisiblePortal:
     def __init__(self, portals, number, cells, x):
         self.portals, portal = portals, portals.portals[number]
         self.map, self.weight = portals.maps[portal.map], 0.0
@@ -192,7 +192,7 @@ def inside(t, low, high):
     return clamp(t, low + away, high - away) if high - low > 2 * away else 0.5 * (low + high)
 
 
-def draw_part(weights, u):
+def sample_part(weights, u):
     """The number of a part, and what is left of u."""
     x, parts = u * sum_of(weights), [i for i, w in enumerate(weights) if w > 0]
     for i in parts:
@@ -202,25 +202,25 @@ def draw_part(weights, u):
     return parts[-1], 1.0
 
 
-class Windows:
+class VisiblePortals:
     def __init__(self, share, seen):
         self.share, self.seen = share, seen
-        self.weight = sum_of([window.weight for window in seen])
+        self.weight = sum_of([visible_portal.weight for visible_portal in seen])
 
     def density(self, direction, row):
         """With that of the row."""
         d = direction_of(direction)
         if d is None or not of_unit_length(d):
             return 0.0
-        through = sum_of([window.density(d) for window in self.seen]) / self.weight
+        through = sum_of([visible_portal.density(d) for visible_portal in self.seen]) / self.weight
         pdf = self.share * row + (1 - self.share) * through
         return pdf32(pdf) if pdf > 0 else 0.0
 
     def draw(self, u):
         u = list(u)
-        number, u[0] = draw_part([window.weight for window in self.seen], u[0])
-        window = self.seen[number]
-        K = range(window.portals.K)
-        x, u[0] = draw_part([sum_of([window.w[i, j] for j in K]) for i in K], u[0])
-        y, u[1] = draw_part([window.w[x, j] for j in K], u[1])
-        return window.draw(x, y, u)
+        number, u[0] = sample_part([visible_portal.weight for visible_portal in self.seen], u[0])
+        visible_portal = self.seen[number]
+        K = range(visible_portal.portals.K)
+        x, u[0] = sample_part([sum_of([visible_portal.w[i, j] for j in K]) for i in K], u[0])
+        y, u[1] = sample_part([visible_portal.w[x, j] for j in K], u[1])
+        return visible_portal.draw(x, y, u)

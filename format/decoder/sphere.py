@@ -2,7 +2,7 @@
 import ctypes
 import math
 
-from .tree import fraction_drawn, random_number_at, slope
+from .tree import fraction_sampled, random_number_at, slope
 
 BETA = 2.0**-22
 PI = math.pi
@@ -63,7 +63,7 @@ class Sphere:
     def place(self, box, u, s, p):
         """The direction in a cell (§6.2), with its density."""
         (x0, x1), (y0, y1) = box
-        t = [fraction_drawn(u[0], s[0]), fraction_drawn(u[1], s[1])]
+        t = [fraction_sampled(u[0], s[0]), fraction_sampled(u[1], s[1])]
         x = clamp(x0 + t[0] * (x1 - x0), x0 + self.W * (BETA / (2 * PI)), x1 - self.W * (BETA / (2 * PI)))
         z = self.z(y0) + t[1] * (self.z(y1) - self.z(y0))
         r = math.sqrt((1 - z) * (1 + z))

@@ -2,7 +2,7 @@
 import math
 
 from .sphere import BETA, PI, Sphere, a, clamp, f32, pdf32, sin_cos
-from .tree import fraction_drawn, slope
+from .tree import fraction_sampled, slope
 
 
 class Square:
@@ -15,7 +15,7 @@ class Square:
         return [[0, self.W], [0, self.H]], [0.0, 0.0]
 
     def place(self, box, u, s, p):
-        t = [fraction_drawn(u[0], s[0]), fraction_drawn(u[1], s[1])]
+        t = [fraction_sampled(u[0], s[0]), fraction_sampled(u[1], s[1])]
         at = []
         for k, resolution in enumerate((self.W, self.H)):
             low, high = box[k]

@@ -2,7 +2,7 @@
 import math
 
 from .sphere import clamp, random_number
-from .tree import fraction_drawn, slope
+from .tree import fraction_sampled, slope
 
 LEAST, MOST = 2.2250738585072014e-308, 1.7976931348623157e+308
 
@@ -14,7 +14,7 @@ class Table:
         self.sampled = axes[len(self.indexed):]
 
     def root(self, index):
-        """None where there is nothing to draw."""
+        """None where there is nothing to sample."""
         number = 0
         for axis, i in zip(self.indexed, index):
             if not 0 <= i < axis.resolution:
@@ -27,7 +27,7 @@ class Table:
         return [[0, axis.resolution] for axis in self.axes], [0.0] * len(self.axes)
 
     def sample(self, index, u):
-        """Returns the coordinates and the density; None and 0 where nothing is drawn."""
+        """Returns the coordinates and the density; None and 0 where nothing is sampled."""
         root, first = self.root(index), len(self.indexed)
         if root is None:
             return None, 0.0
@@ -38,7 +38,7 @@ class Table:
         for k in range(first, len(self.axes)):
             axis, (x0, x1) = self.axes[k], box[k]
             b = 2.0**-48 * max(abs(axis.low), abs(axis.high)) * axis.resolution / abs(axis.high - axis.low)
-            position = clamp(x0 + fraction_drawn(left[k], s[k]) * (x1 - x0), x0 + b, x1 - b)
+            position = clamp(x0 + fraction_sampled(left[k], s[k]) * (x1 - x0), x0 + b, x1 - b)
             out.append(axis.low + (axis.high - axis.low) * (position / axis.resolution))
         return out, self.density(p, box, s, [self.position(axis, x) for axis, x in zip(self.sampled, out)])
 

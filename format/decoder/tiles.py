@@ -122,7 +122,7 @@ class Tiles(Splits):
         p = sum_of([wk * qk for wk, qk in zip(w, q)])
         return node & ~TILE, max(p / sum_of(w), LEAST) if p > 0 else 0.0
 
-    def draw_within(self, tree, tile, p, u, box, s):
+    def sample_within(self, tree, tile, p, u, box, s):
         """Step 4, from a tile whose probability is p."""
         box[:2] = [list(self.boxes[tile][0]), list(self.boxes[tile][1])]
         if self.root(tile) == NO_ROOT:

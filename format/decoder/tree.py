@@ -1,4 +1,4 @@
-"""SPEC.md §5.4, §6.2 and §6.3: curves, and the walks that draw and find cells."""
+"""SPEC.md §5.4, §6.2 and §6.3: curves, and the walks that sample and find cells."""
 import math
 import struct
 from bisect import bisect_right
@@ -130,7 +130,7 @@ class Tree:
             unit += curve.child(i)
 
 
-def fraction_drawn(u, s):
+def fraction_sampled(u, s):
     """t of §6.2."""
     return u if s == 0 else 2 * u / ((1 - s) + math.sqrt((1 - s) * (1 - s) + 4 * s * u))
 

@@ -1,12 +1,12 @@
 #include "build/environment.h"
 
-#include "build/accuracy/company.h"
+#include "build/accuracy/partner.h"
 #include "build/errors.h"
 #include "build/local.h"
-#include "build/text/company.h"
 #include "build/text/options.h"
-#include "compress/company/target.h"
+#include "build/text/partner.h"
 #include "compress/halvings/fit.h"
+#include "compress/partner/target.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -34,7 +34,7 @@ compress::Metadata metadata(const Source& source, const EnvironmentOptions& opti
                            {"source.sha256", source.sha256},
                            {"source.projection", source.projection},
                            {"accuracy.relative_variance", accuracy_text(accuracy.relative_variance)}};
-    if (!options.company) { // the density of a file for a company is not to be near the light's
+    if (!options.mis) { // the density of a file for an MIS partner is not to be near the light's
         out.push_back({"accuracy.rms_pdf_error", accuracy_text(accuracy.rms_pdf_error)});
         out.push_back({"accuracy.kl_divergence", accuracy_text(accuracy.kl_divergence)});
     }
@@ -43,22 +43,22 @@ compress::Metadata metadata(const Source& source, const EnvironmentOptions& opti
     return out;
 }
 
-constexpr std::uint32_t kNormalsPerEdge = 8; // of an octahedron: the normals that a company lights
+constexpr std::uint32_t kNormalsPerEdge = 8; // of an octahedron: the normals that an MIS partner lights
 
 /// What is fitted.
 compress::Target fitted_target(const compress::Target& target, const EnvironmentOptions& options) {
     compress::NormalBins normals = compress::octahedral_bins(kNormalsPerEdge);
     if (!options.scene.empty()) compress::weigh(normals, options.scene);
-    return compress::company_target(target, normals, options.company);
+    return compress::partner_target(target, normals, options.mis);
 }
 
-/// Writes into the file what the company was found to leave to it.
+/// Writes into the file what the partner was found to leave to it.
 void recommend(const std::vector<std::uint8_t>& bytes, const compress::Target& target,
                const EnvironmentOptions& options, compress::Description& description) {
     File file;
     if (!File::from_memory(bytes.data(), bytes.size(), file).ok()) return; // told by measure_bytes
-    const double share = recommended_share(file, target, test_normals(options.scene, 64));
-    description.chunks = {compress::company_chunk(options.company, static_cast<float>(share), {})};
+    const double share = recommended_light_share(file, target, test_normals(options.scene, 64));
+    description.chunks = {compress::partner_chunk(options.mis, static_cast<float>(share), {})};
 }
 
 std::string out_of_budget(std::uint64_t budget, const compress::Description& description) {
@@ -96,8 +96,8 @@ compress::Halvings fit_halvings(const compress::Target& target, const Environmen
         fit.chunk_bytes = compress::halvings_room(description, fit.goal.budget);
         if (fit.chunk_bytes == 0) throw std::runtime_error(out_of_budget(fit.goal.budget, description));
     }
-    return options.company ? compress::fit_halvings(fitted_target(target, options), fit)
-                           : compress::fit_halvings(target, fit);
+    return options.mis ? compress::fit_halvings(fitted_target(target, options), fit)
+                       : compress::fit_halvings(target, fit);
 }
 
 FittedTree fit_tree(const compress::Target& target, const EnvironmentOptions& options, std::optional<Order> tried,
@@ -122,14 +122,14 @@ Environment build_once(const compress::Target& target, const Source& source, con
     const double stored_weights[3] = {weights.r, weights.g, weights.b};
     std::copy(std::begin(stored_weights), std::end(stored_weights), description.channel_weights);
     description.metadata = metadata(source, options, tried, {});
-    if (options.company) description.chunks = {compress::company_chunk(options.company, 0.5f, {})};
+    if (options.mis) description.chunks = {compress::partner_chunk(options.mis, 0.5f, {})};
 
     const FittedTree tree = fit_tree(target, options, tried, description, [&](double share) {
         if (progress) progress(0.9 * share, "fitting");
     });
     Environment out;
     out.order = tried ? tried : options.fit.order;
-    if (options.company) recommend(tree.stored(description), target, options, description);
+    if (options.mis) recommend(tree.stored(description), target, options, description);
     out.accuracy = measure_bytes(tree.stored(description), target);
     description.metadata = metadata(source, options, tried, out.accuracy);
     out.bytes = tree.stored(description, options.codec);
@@ -158,8 +158,8 @@ std::string option_text(const std::string& reading, const EnvironmentOptions& op
     std::string text = reading + target_text(options.target) + codec_text(options.codec) + fit_text(fit.fit);
     if (fit.order) text += "--order " + std::string(to_string(*fit.order)) + " ";
     if (fit.fit != ACDF_FIT_VARIANCE) return text + knots_text(fit);
-    text += company_text(options.company);
-    if (options.company && !options.scene.empty())
+    text += partner_text(options.mis);
+    if (options.mis && !options.scene.empty())
         text += options.scene_text.empty() ? "--scene " : options.scene_text + " ";
     if (fit.max_weight > 0.0) text += "--max-weight " + option_number(fit.max_weight) + " ";
     return text + goal_text(fit.goal);

@@ -3,9 +3,9 @@
 
 #include "build/accuracy/environment.h"
 #include "build/progress.h"
-#include "compress/company.h"
 #include "compress/fit/fit.h"
 #include "compress/local/normals.h"
+#include "compress/partner.h"
 #include "compress/store/store.h"
 
 #include <acdf/builder.h>
@@ -26,8 +26,8 @@ struct EnvironmentOptions {
     compress::TargetOptions target;
     compress::FitOptions fit; ///< without an order, fits of two levels are made both ways, the better one kept
     AcdfCodec codec = ACDF_CODEC_NONE;
-    compress::Company company;                ///< of trees of the variance fit alone
-    std::vector<compress::SceneNormal> scene; ///< that the company lights; empty: all normals
+    compress::Partner mis;                    ///< of trees of the variance fit alone
+    std::vector<compress::SceneNormal> scene; ///< that the partner lights; empty: all normals
     std::string scene_text;                   ///< what `scene` was read from and how, as options in one spelling
 };
 

@@ -5,8 +5,8 @@
 #include "build/lit_bins.h"
 #include "build/local_size.h"
 #include "build/local_whole.h"
-#include "build/text/company.h"
 #include "build/text/options.h"
+#include "build/text/partner.h"
 #include "build/weight_bound.h"
 #include "compress/local/fit.h"
 
@@ -82,10 +82,10 @@ Local finish(LocalDraft draft, const compress::Target& target, const Source& sou
     return out;
 }
 
-float mean_share(const std::vector<AcdfCompanyRecord>& records, const NormalBins& bins) {
+float mean_share(const std::vector<AcdfPartnerRecord>& records, const NormalBins& bins) {
     double sum = 0.0;
     for (std::size_t b = 0; b < records.size(); ++b)
-        sum += bins.weight[b] * static_cast<double>(records[b].recommended_share);
+        sum += bins.weight[b] * static_cast<double>(records[b].recommended_light_share);
     return static_cast<float>(std::clamp(sum, 1e-3, 1.0)); // weights add up to 1
 }
 
@@ -101,27 +101,29 @@ LocalDraft shared_draft(const compress::LocalFit& fit, const compress::Target& t
     LocalDraft draft{fit.tree, description_of(target, source, options, bins, {})};
     draft.description.shares = fit.shares;
     draft.description.chunks = compress::shared_chunks(fit.shared);
-    draft.description.chunks.push_back(compress::local_chunk(static_cast<float>(options.cosine_share), fit.lights));
-    if (options.company)
+    draft.description.chunks.push_back(
+        compress::local_chunk(static_cast<float>(options.cosine_share), fit.bright_tiles));
+    if (options.mis)
         draft.description.chunks.push_back(
-            compress::company_chunk(options.company, mean_share(fit.records, bins), fit.records));
+            compress::partner_chunk(options.mis, mean_share(fit.records, bins), fit.records));
     return draft;
 }
 
-/// Of a file with places: one part in so many is for all that is there without them.
+/// Of a file with visibility cells: one part in so many is for all that is there without them.
 constexpr std::uint64_t kLocalPart = 4;
 
 /// The bytes of a file, before compression.
 struct Budget {
     std::uint64_t whole; ///< for a tree of the environment alone
-    std::uint64_t local; ///< for that, and all else that is there without places
+    std::uint64_t local; ///< for that, and all else that is there without visibility cells
 };
 
 Budget budget_of(const LocalOptions& options, std::uint64_t all, compress::WholeTree tree) {
     const std::uint64_t whole = tree == compress::WholeTree::own ? std::min(whole_tree_bytes(all), all) : 0;
     const std::uint64_t others = all - whole;
-    if (!options.places.scene) return {whole, all};
-    return {whole, whole + (options.places.local_bytes > 0 ? options.places.local_bytes : others / kLocalPart)};
+    if (!options.visibility.scene) return {whole, all};
+    return {whole,
+            whole + (options.visibility.local_bytes > 0 ? options.visibility.local_bytes : others / kLocalPart)};
 }
 
 std::uint64_t bytes_of(const LocalDraft& draft) { return compress::store(draft.tree, draft.description).size(); }
@@ -146,7 +148,7 @@ std::uint64_t bytes_of_bins(const compress::Target& target, const Source& source
     compress::LocalFit nothing;
     nothing.shares.assign(bins.normals.size(), 0.0f);
     nothing.tree.roots.assign(bins.normals.size(), ACDF_NO_ROOT);
-    if (options.company) nothing.records.resize(bins.normals.size(), {1.0f, 0.0f});
+    if (options.mis) nothing.records.resize(bins.normals.size(), {1.0f, 0.0f});
     return bytes_of(shared_draft(nothing, target, source, options, bins));
 }
 
@@ -155,36 +157,39 @@ std::uint64_t least_bytes(const compress::Target& target, const Source& source, 
                           LitBins& bins, compress::LocalSize size) {
     size.tiles = 2;
     size.whole_bytes = 0;
-    compress::LocalFitter fitter(target, bins.bins(), bins.light(), size, {}, options.company);
+    compress::LocalFitter fitter(target, bins.bins(), bins.light(), size, {}, options.mis);
     return bytes_of(shared_draft(fitter.outlined(64), target, source, options, bins.bins())) + kSlack;
 }
 
-/// The file in which what is there without places, and without a tree of the environment alone, has `local` bytes.
+/// The file in which what is there without visibility cells, and without a tree of the environment alone, has
+/// `local` bytes.
 std::uint64_t whole_of(const LocalOptions& options, std::uint64_t local, compress::WholeTree tree) {
-    const bool part = options.places.scene && options.places.local_bytes == 0;
+    const bool part = options.visibility.scene && options.visibility.local_bytes == 0;
     const std::uint64_t others = part ? local * kLocalPart : local;
     return tree == compress::WholeTree::own ? file_of_others(others) : others;
 }
 
-/// Adds places in what `budget` leaves.
-void add_places(LocalDraft& draft, const compress::Target& target, const LocalOptions& options,
-                std::uint64_t budget, const Progress& progress) {
+/// Adds visibility cells in what `budget` leaves.
+void add_visibility(LocalDraft& draft, const compress::Target& target, const LocalOptions& options,
+                    std::uint64_t budget, const Progress& progress) {
     const std::vector<std::uint8_t> bytes = compress::store(draft.tree, draft.description);
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
         throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
-    compress::PlacesSize size;
-    const std::uint64_t record = (sizeof(AcdfChunk) + ACDF_ALIGNMENT) * (options.places.portals.empty() ? 1 : 2);
+    compress::VisibilitySize size;
+    const std::uint64_t record =
+        (sizeof(AcdfChunk) + ACDF_ALIGNMENT) * (options.visibility.portals.empty() ? 1 : 2);
     size.bytes = budget > bytes.size() + record ? budget - bytes.size() - record : 0;
-    compress::PlaceScene scene = options.places.scene;
-    if (!options.places.portals.empty())
+    compress::VisibilityScene scene = options.visibility.scene;
+    if (!options.visibility.portals.empty())
         scene.portals = std::make_shared<const compress::PortalSet>(
-            compress::make_portals(target, options.places.portals, size.bytes / 8));
-    for (compress::Chunk& chunk : compress::fit_places(file.local().data(), file.description().bin_count, scene,
-                                                       options.places.frame, size, [&](double share) {
-                                                           if (progress)
-                                                               progress(0.2 + 0.7 * share, "looking from places");
-                                                       }))
+            compress::make_portals(target, options.visibility.portals, size.bytes / 8));
+    for (compress::Chunk& chunk : compress::fit_visibility(file.local().data(), file.description().bin_count, scene,
+                                                           options.visibility.frame, size, [&](double share) {
+                                                               if (progress)
+                                                                   progress(0.2 + 0.7 * share,
+                                                                            "tracing visibility");
+                                                           }))
         draft.description.chunks.push_back(std::move(chunk));
     const std::uint64_t made = bytes_of(draft);
     if (made > budget) throw OutOfReach(budget, made); // a single cell, or a map of portals, is more than is left
@@ -254,20 +259,20 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
     std::optional<compress::LocalFitter> fitter; // of so many tiles
     std::optional<Local> grown;                  // the best of those that left bytes
     for (int tries = 0, growths = 0;; ++tries) {
-        if (!fitter) fitter.emplace(target, bins, lit.light(), size, fitting(progress), options.company);
+        if (!fitter) fitter.emplace(target, bins, lit.light(), size, fitting(progress), options.mis);
         compress::LocalFit fit = fitter->outlined(size.inside_bytes);
         LocalDraft draft = shared_draft(fit, target, source, options, bins);
         const std::uint64_t bytes = bytes_of(draft);
-        // What lights and packing take is known now; once is enough but where tiles or curves run out.
+        // What bright tiles and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
-        const bool checked = tree == compress::WholeTree::of_tiles && !options.places.scene;
+        const bool checked = tree == compress::WholeTree::of_tiles && !options.visibility.scene;
         if (fits && checked && !tried.alone.is_matched(fit.tree, all))
             return build_plain(target, source, options, all, next_choice(choice), max_weight, tried, least,
                                progress);
         const auto completed = [&] {
             fitter->fill(fit);
             draft = shared_draft(fit, target, source, options, bins);
-            if (options.places.scene) add_places(draft, target, options, all, progress);
+            if (options.visibility.scene) add_visibility(draft, target, options, all, progress);
             Local made = finish(std::move(draft), target, source, options, bins);
             // More tiles may take more from grids than they give.
             if (grown && grown->accuracy.relative_variance < made.accuracy.relative_variance)
@@ -328,12 +333,12 @@ compress::LocalFit fit_cells(const compress::Target& target, const Source& sourc
     for (WholeChoice choice = first_choice(options);; choice = next_choice(choice)) {
         size.whole = choice.tree;
         size.whole_worth = choice.worth;
-        compress::LocalFitter fitter(target, lit.bins(), lit.light(), size, fitting(progress), options.company);
+        compress::LocalFitter fitter(target, lit.bins(), lit.light(), size, fitting(progress), options.mis);
         compress::LocalFit fit = fitter.outlined(size.inside_bytes);
         if (size.whole == compress::WholeTree::own) {
             fitter.refit_whole(whole_tree_bytes(file_of_others(bytes(fit))));
             fit = fitter.outlined(size.inside_bytes);
-        } else if (!options.places.scene && !alone.is_matched(fit.tree, bytes(fit))) {
+        } else if (!options.visibility.scene && !alone.is_matched(fit.tree, bytes(fit))) {
             continue;
         }
         fitter.fill(fit);
@@ -429,8 +434,8 @@ std::string option_text(const std::string& reading, const LocalOptions& o) {
     if (o.columns > 0) text += "--normals " + std::to_string(o.columns) + "x" + std::to_string(o.rows) + " ";
     if (!o.scene_text.empty()) text += o.scene_text + " ";
     else if (!o.scene.empty()) text += "--scene ";
-    text += company_text(o.company);
-    if (o.places.scene && o.scene_text.find("--places") == std::string::npos) text += "--places ";
+    text += partner_text(o.mis);
+    if (o.visibility.scene && o.scene_text.find("--visibility") == std::string::npos) text += "--visibility ";
     if (o.cosine_share > 0.0) text += "--cosine-share " + option_number(o.cosine_share) + " ";
     if (o.sharing) {
         text += shape_text(o);

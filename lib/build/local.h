@@ -7,7 +7,7 @@
 #include "compress/local/fit.h"
 #include "compress/local/fit_separate.h"
 #include "compress/local/normals.h"
-#include "compress/places/fit.h"
+#include "compress/visibility/fit.h"
 
 #include <cstdint>
 #include <optional>
@@ -17,11 +17,11 @@
 namespace acdf::build {
 
 /// Where a scene gathers light, and what hides it there.
-struct ScenePlaces {
-    compress::PlaceScene scene;    ///< empty: places are not told apart
-    std::uint64_t local_bytes = 0; ///< of the budget, for what is there without places and the tree of the
-                                   ///< environment; 0: a quarter of the rest
-    compress::PlacesFrame frame;
+struct SceneVisibility {
+    compress::VisibilityScene scene; ///< empty: there are no visibility cells
+    std::uint64_t local_bytes = 0;   ///< of the budget, for what is there without visibility cells and the tree of
+                                   ///< the environment; 0: a quarter of the rest
+    compress::VisibilityFrame frame;
     std::vector<compress::PortalRectangle> portals; ///< among the cells
 };
 
@@ -49,10 +49,10 @@ struct LocalOptions {
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
     compress::FitOptions fit;                                   ///< of a bin's tree, without sharing
     double cosine_share = 0.0;
-    ScenePlaces places;     ///< only with sharing and a budget
-    std::string scene_text; ///< what `scene` was read from and how, as options in one spelling
+    SceneVisibility visibility; ///< only with sharing and a budget
+    std::string scene_text;     ///< what `scene` was read from and how, as options in one spelling
     AcdfCodec codec = ACDF_CODEC_NONE;
-    compress::Company company; ///< of bins that share tiles
+    compress::Partner mis; ///< of bins that share tiles
 };
 
 /// All options that shape the file, in one spelling: what its `fit.options` tells.
@@ -77,9 +77,9 @@ Local build_local(const compress::Target& target, const Source& source, const Lo
 Local build_local_in_any_shape(const compress::Target& target, const Source& source, const LocalOptions& options,
                                const Progress& progress = {});
 
-/// A draw and a density take 200 and 130 ns of the small shape and 130 and 64 of the fast one (docs/performance.md,
-/// 1 MiB), and a shadow ray and a BRDF beside them 500 (acdf sweep): 830 to 694 ns. So as much variance, and more,
-/// is even after the same time.
+/// A sample and a density take 200 and 130 ns of the small shape and 130 and 64 of the fast one
+/// (docs/performance.md, 1 MiB), and a shadow ray and a BRDF beside them 500 (acdf sweep): 830 to 694 ns. So as
+/// much variance, and more, is even after the same time.
 constexpr double kFastIsWorth = 1.15;
 
 } // namespace acdf::build

@@ -12,7 +12,8 @@ using compress::NormalBins;
 
 namespace {
 
-/// Subdivisions that suit a size: the denser the bins, the fewer tiles there are bytes for (docs/local.md).
+/// Subdivisions that suit a size: the denser the bins, the fewer tiles there are bytes for
+/// (docs/notes/local-method.md).
 std::uint32_t subdivisions_for(LocalShape shape, double bytes) {
     const double at_256k = shape == LocalShape::fast ? 6.7 : 8.0;
     return static_cast<std::uint32_t>(std::clamp(std::lround(at_256k * std::pow(bytes / 262144.0, 0.3)), 3l, 64l));
@@ -70,7 +71,7 @@ constexpr double kInsideOfCells = 0.3; // of files that are asked for by their c
 
 compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, double bytes, double inside) {
     constexpr double fixed = 2600.0;
-    const std::size_t of_bin = sizeof(AcdfBin) + (o.company ? sizeof(AcdfCompanyRecord) : 0);
+    const std::size_t of_bin = sizeof(AcdfBin) + (o.mis ? sizeof(AcdfPartnerRecord) : 0);
     const double room = bytes - fixed - double(bins.normals.size() * of_bin);
     compress::LocalSize size;
     size.shape = o.shape;

@@ -1,4 +1,4 @@
-// What points without a normal draw from: the tree of a local file that is the environment as a whole. It is as
+// What points without a normal sample from: the tree of a local file that is the environment as a whole. It is as
 // accurate as an environment file of a quarter of the bytes.
 #pragma once
 

@@ -18,7 +18,7 @@ Target target_of(compress::Target grid, const TargetOptions& options);
 /// `brdf` must outlive what is made.
 Brdf described(const build::Brdf& brdf);
 
-/// Whether a transform of places (its linear part) mirrors: triangles are then wound the other way round.
+/// Whether a transform of visibility cells (its linear part) mirrors: triangles are then wound the other way round.
 bool mirrors(const float transform[3][4]);
 
 } // namespace acdf::builder

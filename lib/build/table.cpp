@@ -1,8 +1,8 @@
 #include "build/table.h"
 
 #include "build/errors.h"
-#include "build/table_company.h"
-#include "build/text/company.h"
+#include "build/table_partner.h"
+#include "build/text/partner.h"
 #include "compress/fit/tree.h"
 #include "compress/sum.h"
 
@@ -106,7 +106,7 @@ std::vector<double> integrals(const std::vector<compress::Grid>& bins) {
     return out;
 }
 
-/// A bin with any energy keeps a positive share, however small: share 0 says that there is nothing to draw.
+/// A bin with any energy keeps a positive share, however small: share 0 says that there is nothing to sample.
 std::vector<float> shares(const std::vector<double>& integrals) {
     std::vector<float> out;
     for (std::size_t i = 0; i + 1 < integrals.size(); ++i)
@@ -122,7 +122,7 @@ std::string option_text(const TableOptions& options) {
     else if (goal.kind == compress::Goal::Kind::variance) text += "--target-variance " + number(goal.variance);
     else text += "--cells " + std::to_string(options.cells);
     if (options.fit.max_weight > 0.0) text += " --max-weight " + number(options.fit.max_weight);
-    if (options.company) text += " " + company_text(options.company);
+    if (options.mis) text += " " + partner_text(options.mis);
     if (text.back() == ' ') text.pop_back();
     return text;
 }
@@ -140,9 +140,9 @@ compress::Metadata metadata(const std::string& name, const std::string& sha256, 
                            {"accuracy.relative_variance_worst", fixed(accuracy.worst)},
                            {"accuracy.kl_divergence", fixed(accuracy.kl_divergence)},
                            {"accuracy.max_weight", fixed(accuracy.max_weight)}};
-    if (options.company) {
-        out.push_back({"company.name", options.other_name});
-        out.push_back({"company.sha256", options.other_sha256});
+    if (options.mis) {
+        out.push_back({"partner.name", options.other_name});
+        out.push_back({"partner.sha256", options.other_sha256});
     }
     return out;
 }
@@ -155,20 +155,20 @@ File open_made(const std::vector<std::uint8_t>& bytes) {
 }
 
 /// `shares`: those to recommend, one a bin.
-compress::Chunk company_of(const compress::Company& company, const std::vector<float>& shares) {
-    std::vector<AcdfCompanyRecord> records;
+compress::Chunk partner_of(const compress::Partner& partner, const std::vector<float>& shares) {
+    std::vector<AcdfPartnerRecord> records;
     double sum = 0.0;
     for (const float share : shares) {
         records.push_back({share, 0.0f});
         sum += static_cast<double>(share);
     }
-    return compress::company_chunk(company, static_cast<float>(sum / double(shares.size())), records);
+    return compress::partner_chunk(partner, static_cast<float>(sum / double(shares.size())), records);
 }
 
-/// The bins of the company. Throws OptionError.
+/// The bins of the partner. Throws OptionError.
 std::vector<compress::Grid> other_grids(const Array& array, const TableOptions& options) {
-    if (!options.company) return {};
-    if (options.other->shape != array.shape) throw OptionError("the company of a table has another shape");
+    if (!options.mis) return {};
+    if (options.other->shape != array.shape) throw OptionError("the partner of a table has another shape");
     return table_grids(*options.other, options.indexed);
 }
 
@@ -221,14 +221,14 @@ Table build_table(const Array& array, const std::string& source_name, const std:
     options.fit.progress = [&](double share) {
         if (progress) progress(0.9 * share, "fitting");
     };
-    if (options.company) description.chunks = {company_of(options.company, std::vector<float>(bins.size(), 0.5f))};
-    const TableCompany beside(bins, others, options.company);
+    if (options.mis) description.chunks = {partner_of(options.mis, std::vector<float>(bins.size(), 0.5f))};
+    const TablePartner beside(bins, others, options.mis);
     const compress::EncodedTree tree = compress::fit_trees(beside.bins(), options.fit).tree;
     const std::vector<std::uint8_t> bytes = compress::store(tree, description);
     const File file = open_made(bytes);
-    out.accuracy = summary(options.company ? measure_bins_beside(file, bins, others) : measure_bins(file, bins));
-    out.accuracy.combined = static_cast<bool>(options.company);
-    if (options.company) description.chunks = {company_of(options.company, recommended_shares(file, bins, others))};
+    out.accuracy = summary(options.mis ? measure_bins_beside(file, bins, others) : measure_bins(file, bins));
+    out.accuracy.combined = static_cast<bool>(options.mis);
+    if (options.mis) description.chunks = {partner_of(options.mis, recommended_light_shares(file, bins, others))};
     description.metadata = metadata(source_name, source_sha256, options, out.accuracy);
     out.bytes = compress::store(tree, description, options.codec);
     if (progress) progress(1.0, "measuring");

@@ -4,9 +4,9 @@
 #include "build/accuracy/table.h"
 #include "build/array.h"
 #include "build/progress.h"
-#include "compress/company.h"
 #include "compress/fit/fit.h"
 #include "compress/grid.h"
+#include "compress/partner.h"
 #include "compress/store/store.h"
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct TableOptions {
     std::vector<std::pair<double, double>> ranges; ///< one an axis: coordinates of its ends; empty: 0 to its length
     std::uint32_t cells = 0;                       ///< a bin, on average; 0: 4096 in all, at least 64 each
     compress::FitOptions fit;                      ///< goal (cells: see above), max_weight, progress
-    compress::Company company;                     ///< ACDF_COMPANY_TABLE or none
+    compress::Partner mis;                         ///< ACDF_PARTNER_TABLE or none
     const Array* other = nullptr;                  ///< that table; it must outlive the build
     std::string other_name, other_sha256;          ///< where it comes from
     AcdfCodec codec = ACDF_CODEC_NONE;

@@ -1,7 +1,7 @@
 // A non-negative function on a grid of any number of axes, as the variance fit sees it.
 #pragma once
 
-#include "compress/company.h"
+#include "compress/partner.h"
 #include "compress/target.h"
 
 #include <cstdint>
@@ -18,8 +18,8 @@ struct Grid {
     const float* values = nullptr;
     const float* peaks = nullptr; ///< largest value within each box of the grid, laid out alike; null: `values`
 
-    /// Beside a company (compress/company.h), laid out alike: what steps cost if they are left to it, and at best;
-    /// both per measure. Null: without any.
+    /// Beside an MIS partner (compress/partner.h), laid out alike: what steps cost if they are left to it, and at
+    /// best; both per measure. Null: without any.
     const float *left = nullptr, *least = nullptr;
     const Filling* filling = nullptr; ///< how a cell's share follows from its costs
 

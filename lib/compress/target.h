@@ -36,7 +36,7 @@ struct Target {
     /// Square of the integral of f, of several channels their sum: what E[(f/p)^2] is compared with. 0: g is f.
     double mean_square = 0.0;
     AcdfParameterization parameterization = ACDF_PARAM_LATLONG; ///< of a probe: lat-long or octahedral
-    /// Beside a company: see Grid. Empty: without any.
+    /// Beside an MIS partner: see Grid. Empty: without any.
     std::vector<float> left, least;
     std::shared_ptr<const Filling> filling;
 

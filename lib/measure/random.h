@@ -9,13 +9,13 @@
 
 namespace acdf::measure {
 
-/// What pairs of numbers are drawn from.
+/// What pairs of numbers are sampled from.
 enum class Numbers {
     independent,
     sobol, ///< each set of pairs is a part of the two-dimensional Sobol' sequence, scrambled anew (ScrambledSobol)
 };
 
-/// A set is what one sampler draws for one estimate. Sets are independent of each other: a sequence of many
+/// A set is what one sampler samples for one estimate. Sets are independent of each other: a sequence of many
 /// dimensions is padded from such of two.
 class Random {
 public:

@@ -49,15 +49,15 @@ py::array checked_output(const py::object& given, const py::dtype& type, const s
     return array;
 }
 
-std::size_t items_each(const std::vector<py::ssize_t>& places, const char* place_name,
+std::size_t items_each(const std::vector<py::ssize_t>& leading, const char* condition_name,
                        const std::vector<py::ssize_t>& items, const char* item_name) {
-    bool begins = places.size() <= items.size();
-    for (std::size_t i = 0; begins && i < places.size(); ++i) begins = places[i] == items[i];
+    bool begins = leading.size() <= items.size();
+    for (std::size_t i = 0; begins && i < leading.size(); ++i) begins = leading[i] == items[i];
     if (!begins)
-        throw py::value_error(std::string(place_name) + ": its leading shape " + shape_text(places) +
+        throw py::value_error(std::string(condition_name) + ": its leading shape " + shape_text(leading) +
                               " does not begin that of " + item_name + ", " + shape_text(items));
     std::size_t each = 1;
-    for (std::size_t i = places.size(); i < items.size(); ++i) each *= static_cast<std::size_t>(items[i]);
+    for (std::size_t i = leading.size(); i < items.size(); ++i) each *= static_cast<std::size_t>(items[i]);
     return each ? each : 1;
 }
 

@@ -47,9 +47,9 @@ Rows<T> rows(const py::handle& given, py::ssize_t width, const char* name, const
     return out;
 }
 
-/// How many items that follow one another each of `places` serves: its leading shape begins that of the items.
+/// How many items that follow one another each of `leading` serves: its leading shape begins that of the items.
 /// Raises ValueError where it does not.
-std::size_t items_each(const std::vector<py::ssize_t>& places, const char* place_name,
+std::size_t items_each(const std::vector<py::ssize_t>& leading, const char* condition_name,
                        const std::vector<py::ssize_t>& items, const char* item_name);
 
 /// Raises unless `given` can be written to as a packed array of that type and shape.

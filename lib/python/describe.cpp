@@ -1,6 +1,6 @@
 // What is inside a file, as plain Python values; names as in `acdf info --json`.
-#include "build/text/company.h"
 #include "build/text/format_names.h"
+#include "build/text/partner.h"
 #include "python/file.h"
 
 #include <cstring>
@@ -42,20 +42,20 @@ py::list chunks_of(const AcdfFile* file) {
     return out;
 }
 
-py::object company_of(const AcdfFile* file) {
-    const AcdfCompany* company = nullptr;
+py::object partner_of(const AcdfFile* file) {
+    const AcdfPartner* partner = nullptr;
     AcdfEnvironment environment;
     AcdfLocal local;
     AcdfTable table;
-    if (acdf_environment(file, &environment)) company = environment.company;
-    if (acdf_local(file, &local)) company = local.company;
-    if (acdf_table(file, &table)) company = table.company;
-    if (!company) return py::none();
+    if (acdf_environment(file, &environment)) partner = environment.partner;
+    if (acdf_local(file, &local)) partner = local.partner;
+    if (acdf_table(file, &table)) partner = table.partner;
+    if (!partner) return py::none();
     py::dict out;
-    out["with"] = build::company_name(static_cast<AcdfCompanyKind>(company->kind));
-    out["heuristic"] = build::heuristic_name(static_cast<AcdfHeuristic>(company->heuristic));
-    out["share"] = company->share;
-    out["recommended_share"] = company->recommended_share;
+    out["kind"] = build::partner_name(static_cast<AcdfPartnerKind>(partner->kind));
+    out["heuristic"] = build::heuristic_name(static_cast<AcdfHeuristic>(partner->heuristic));
+    out["share"] = partner->share;
+    out["recommended_light_share"] = partner->recommended_light_share;
     return std::move(out);
 }
 
@@ -76,7 +76,7 @@ py::dict description_of(const OpenFile& open) {
     out["bytes"] = acdf_size(file);
     out["table_bytes"] = acdf_table_bytes(file);
     out["bins"] = description->bin_count;
-    out["company"] = company_of(file);
+    out["partner"] = partner_of(file);
     out["axes"] = axes_of(file);
     out["fit"] = build::fit_name(description->fit);
     out["filter"] = build::filter_name(description->filter);

@@ -1,4 +1,4 @@
-// Draws and densities of arrays.
+// Samples and pdfs of arrays.
 #include "python/file.h"
 
 namespace acdf::python {
@@ -12,21 +12,21 @@ AcdfLoadOptions load_options(bool tables) {
     return options;
 }
 
-const char* place_name(AcdfKind kind) {
+const char* condition_name(AcdfKind kind) {
     return kind == ACDF_KIND_LOCAL ? "normals" : kind == ACDF_KIND_BRDF ? "wo" : "index";
 }
 
 const char* item_name(AcdfKind kind) { return kind == ACDF_KIND_BRDF ? "wi" : "directions"; }
 
 /// Normals or views, and how many items each serves; of an environment none.
-struct Places {
+struct Conditions {
     Rows<float> rows;
     std::size_t each = 1;
 };
-Places places(const AcdfFile* file, const py::object& place, const std::vector<py::ssize_t>& items,
-              const char* item_name) {
-    const char* name = place_name(acdf_kind(file));
-    Rows<float> of = rows<float>(place, 3, name);
+Conditions conditions(const AcdfFile* file, const py::object& condition, const std::vector<py::ssize_t>& items,
+                      const char* item_name) {
+    const char* name = condition_name(acdf_kind(file));
+    Rows<float> of = rows<float>(condition, 3, name);
     const std::size_t each = items_each(of.leading, name, items, item_name);
     return {std::move(of), each};
 }
@@ -37,17 +37,17 @@ struct Indices {
     std::size_t each;
     const std::uint32_t* data;
 };
-Indices indices(const AcdfFile* file, const py::object& place, const std::vector<py::ssize_t>& items,
+Indices indices(const AcdfFile* file, const py::object& condition, const std::vector<py::ssize_t>& items,
                 const char* item_name) {
     const auto axes = static_cast<py::ssize_t>(acdf_table_indexed_axes(file));
     if (axes == 0) {
-        if (!place.is_none()) throw py::value_error("index: the table has no indexed axis");
+        if (!condition.is_none()) throw py::value_error("index: the table has no indexed axis");
         return {{}, 1, nullptr};
     }
-    if (place.is_none())
+    if (condition.is_none())
         throw py::value_error("index: the table has " + std::to_string(axes) +
                               " indexed axes; give one integer each");
-    const Rows<std::int64_t> wide = rows<std::int64_t>(place, axes, "index", "iu");
+    const Rows<std::int64_t> wide = rows<std::int64_t>(condition, axes, "index", "iu");
     // Not within the braces below: gcc 12 destroys `rows` twice where a later member's initializer throws.
     const std::size_t each = items_each(wide.leading, "index", items, item_name);
     Indices out = {{}, each, nullptr};
@@ -111,52 +111,53 @@ const AcdfBrdfWaves* OpenFile::waves(std::size_t count) const {
     return waves_.get(); // null: no memory for them; the loop serves
 }
 
-py::tuple OpenFile::sample(const py::object& place, const py::object& given, const py::tuple& out) const {
+py::tuple OpenFile::sample(const py::object& condition, const py::object& given, const py::tuple& out) const {
     const AcdfKind kind = acdf_kind(file());
-    if (kind == ACDF_KIND_TABLE) return sample_table(place, given, out);
+    if (kind == ACDF_KIND_TABLE) return sample_table(condition, given, out);
     const Rows<double> u = rows<double>(given, 2, "u");
     py::array_t<float> directions = output<float>(out[0], u.leading, 3), pdfs = output<float>(out[1], u.leading, 0);
     float *w = directions.mutable_data(), *p = pdfs.mutable_data();
-    const Places at = kind == ACDF_KIND_ENVIRONMENT ? Places() : places(file(), place, u.leading, "u");
+    const Conditions at =
+        kind == ACDF_KIND_ENVIRONMENT ? Conditions() : conditions(file(), condition, u.leading, "u");
     const double* numbers = u.data();
     const float* from = at.rows.data();
     {
         const py::gil_scoped_release release;
         const AcdfBrdfWaves* fast = kind == ACDF_KIND_BRDF ? waves(u.count) : nullptr;
         if (fast) acdf_brdf_waves_draw(fast, from, at.each, numbers, u.count, w, p);
-        else if (kind == ACDF_KIND_BRDF) acdf_draw_brdf_array(file(), from, at.each, numbers, u.count, w, p);
-        else if (kind == ACDF_KIND_LOCAL) acdf_draw_local_array(file(), from, at.each, numbers, u.count, w, p);
-        else acdf_draw_environment_array(file(), numbers, u.count, w, p);
+        else if (kind == ACDF_KIND_BRDF) acdf_sample_brdf_array(file(), from, at.each, numbers, u.count, w, p);
+        else if (kind == ACDF_KIND_LOCAL) acdf_sample_local_array(file(), from, at.each, numbers, u.count, w, p);
+        else acdf_sample_environment_array(file(), numbers, u.count, w, p);
     }
     return py::make_tuple(directions, pdfs);
 }
 
-py::tuple OpenFile::sample_table(const py::object& place, const py::object& given, const py::tuple& out) const {
+py::tuple OpenFile::sample_table(const py::object& condition, const py::object& given, const py::tuple& out) const {
     const auto axes = static_cast<py::ssize_t>(acdf_table_sampled_axes(file()));
     const Rows<double> u = rows<double>(given, axes, "u");
-    const Indices at = indices(file(), place, u.leading, "u");
+    const Indices at = indices(file(), condition, u.leading, "u");
     py::array_t<double> points = output<double>(out[0], u.leading, axes),
                         pdfs = output<double>(out[1], u.leading, 0);
     double *x = points.mutable_data(), *p = pdfs.mutable_data();
     const double* numbers = u.data();
     {
         const py::gil_scoped_release release;
-        acdf_draw_table_array(file(), at.data, at.each, numbers, u.count, x, p);
+        acdf_sample_table_array(file(), at.data, at.each, numbers, u.count, x, p);
     }
     return py::make_tuple(points, pdfs);
 }
 
-py::array OpenFile::pdf(const py::object& place, const py::object& given, const py::object& out) const {
+py::array OpenFile::pdf(const py::object& condition, const py::object& given, const py::object& out) const {
     const AcdfKind kind = acdf_kind(file());
     if (kind == ACDF_KIND_TABLE) {
         const Rows<double> x = rows<double>(given, static_cast<py::ssize_t>(acdf_table_sampled_axes(file())), "x");
-        const Indices at = indices(file(), place, x.leading, "x");
+        const Indices at = indices(file(), condition, x.leading, "x");
         py::array_t<double> pdfs = output<double>(out, x.leading, 0);
         double* p = pdfs.mutable_data();
         const double* points = x.data();
         {
             const py::gil_scoped_release release;
-            acdf_density_table_array(file(), at.data, at.each, points, x.count, p);
+            acdf_pdf_table_array(file(), at.data, at.each, points, x.count, p);
         }
         return std::move(pdfs);
     }
@@ -164,25 +165,26 @@ py::array OpenFile::pdf(const py::object& place, const py::object& given, const 
     const Rows<float> w = rows<float>(given, 3, name);
     py::array_t<float> pdfs = output<float>(out, w.leading, 0);
     float* p = pdfs.mutable_data();
-    const Places at = kind == ACDF_KIND_ENVIRONMENT ? Places() : places(file(), place, w.leading, name);
+    const Conditions at =
+        kind == ACDF_KIND_ENVIRONMENT ? Conditions() : conditions(file(), condition, w.leading, name);
     const float *directions = w.data(), *from = at.rows.data();
     {
         const py::gil_scoped_release release;
         const AcdfBrdfWaves* fast = kind == ACDF_KIND_BRDF ? waves(w.count) : nullptr;
         if (fast) acdf_brdf_waves_density(fast, from, at.each, directions, w.count, p);
-        else if (kind == ACDF_KIND_BRDF) acdf_density_brdf_array(file(), from, at.each, directions, w.count, p);
-        else if (kind == ACDF_KIND_LOCAL) acdf_density_local_array(file(), from, at.each, directions, w.count, p);
-        else acdf_density_environment_array(file(), directions, w.count, p);
+        else if (kind == ACDF_KIND_BRDF) acdf_pdf_brdf_array(file(), from, at.each, directions, w.count, p);
+        else if (kind == ACDF_KIND_LOCAL) acdf_pdf_local_array(file(), from, at.each, directions, w.count, p);
+        else acdf_pdf_environment_array(file(), directions, w.count, p);
     }
     return std::move(pdfs);
 }
 
-py::array OpenFile::invert(const py::object& place, const py::object& given) const {
+py::array OpenFile::invert(const py::object& condition, const py::object& given) const {
     const AcdfKind kind = acdf_kind(file());
     const auto axes = kind == ACDF_KIND_TABLE ? static_cast<py::ssize_t>(acdf_table_sampled_axes(file())) : 2;
     if (kind == ACDF_KIND_TABLE) {
         const Rows<double> x = rows<double>(given, axes, "x");
-        const Indices at = indices(file(), place, x.leading, "x");
+        const Indices at = indices(file(), condition, x.leading, "x");
         py::array_t<double> numbers = new_array<double>(x.leading, axes);
         double* u = numbers.mutable_data();
         const double* points = x.data();
@@ -194,7 +196,8 @@ py::array OpenFile::invert(const py::object& place, const py::object& given) con
     }
     const char* name = item_name(kind);
     const Rows<float> w = rows<float>(given, 3, name);
-    const Places at = kind == ACDF_KIND_ENVIRONMENT ? Places() : places(file(), place, w.leading, name);
+    const Conditions at =
+        kind == ACDF_KIND_ENVIRONMENT ? Conditions() : conditions(file(), condition, w.leading, name);
     py::array_t<double> numbers = new_array<double>(w.leading, axes);
     double* u = numbers.mutable_data();
     const float *directions = w.data(), *from = at.rows.data();
@@ -206,9 +209,9 @@ py::array OpenFile::invert(const py::object& place, const py::object& given) con
     return std::move(numbers);
 }
 
-py::array OpenFile::total_of(const py::object& place) const {
+py::array OpenFile::total_of(const py::object& condition) const {
     const AcdfKind kind = acdf_kind(file());
-    const Rows<float> at = rows<float>(place, 3, place_name(kind));
+    const Rows<float> at = rows<float>(condition, 3, condition_name(kind));
     py::array_t<double> totals = new_array<double>(at.leading, 0);
     double* out = totals.mutable_data();
     const float* from = at.data();

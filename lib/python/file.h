@@ -16,17 +16,17 @@ namespace acdf::python {
 class OpenFile {
 public:
     static std::unique_ptr<OpenFile> from_path(const std::string& path, bool tables);
-    /// Uses the bytes in place: they cannot change.
+    /// Uses the bytes in condition: they cannot change.
     static std::unique_ptr<OpenFile> from_bytes(const py::bytes& bytes, bool tables);
 
     const AcdfFile* file() const { return file_.get(); }
-    /// Directions (or points) and their densities. `place`: normals, views, indices; None for environments. `out`:
-    /// where they are written, or None for new arrays.
-    py::tuple sample(const py::object& place, const py::object& u, const py::tuple& out) const;
-    py::array pdf(const py::object& place, const py::object& x, const py::object& out) const;
-    py::array invert(const py::object& place, const py::object& x) const;
+    /// Directions (or points) and their densities. `condition`: normals, views, indices; None for environments.
+    /// `out`: where they are written, or None for new arrays.
+    py::tuple sample(const py::object& condition, const py::object& u, const py::tuple& out) const;
+    py::array pdf(const py::object& condition, const py::object& x, const py::object& out) const;
+    py::array invert(const py::object& condition, const py::object& x) const;
     /// Irradiance of normals, or albedo of views.
-    py::array total_of(const py::object& place) const;
+    py::array total_of(const py::object& condition) const;
 
 private:
     struct Close {
@@ -36,7 +36,7 @@ private:
 
     explicit OpenFile(AcdfFile* file, py::object keeps) : keeps_(std::move(keeps)), file_(file) {}
     const AcdfBrdfWaves* waves(std::size_t count) const;
-    py::tuple sample_table(const py::object& place, const py::object& u, const py::tuple& out) const;
+    py::tuple sample_table(const py::object& condition, const py::object& u, const py::tuple& out) const;
 
     py::object keeps_;
     std::unique_ptr<AcdfFile, Close> file_;

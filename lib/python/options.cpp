@@ -57,19 +57,19 @@ FitOptions fit_options(const Options& options) {
     return fit;
 }
 
-Company company_of(const Options& options, Company company = {}) {
-    options.choose<AcdfCompanyKind>("company",
-                                    {{"none", ACDF_COMPANY_NONE},
-                                     {"cosine", ACDF_COMPANY_COSINE},
-                                     {"brdf", ACDF_COMPANY_BRDF},
-                                     {"mean", ACDF_COMPANY_MEAN}},
-                                    company.kind);
+Partner partner_of(const Options& options, Partner partner = {}) {
+    options.choose<AcdfPartnerKind>("mis",
+                                    {{"none", ACDF_PARTNER_NONE},
+                                     {"cosine", ACDF_PARTNER_COSINE},
+                                     {"brdf", ACDF_PARTNER_BRDF},
+                                     {"mean", ACDF_PARTNER_MEAN}},
+                                    partner.kind);
     options.choose<AcdfHeuristic>(
-        "heuristic", {{"balance", ACDF_HEURISTIC_BALANCE}, {"power", ACDF_HEURISTIC_POWER}}, company.heuristic);
-    std::pair<double, double> shares{company.light, company.other};
+        "heuristic", {{"balance", ACDF_HEURISTIC_BALANCE}, {"power", ACDF_HEURISTIC_POWER}}, partner.heuristic);
+    std::pair<double, double> shares{partner.light, partner.other};
     options.take("shares", shares);
-    company.light = shares.first, company.other = shares.second;
-    return company;
+    partner.light = shares.first, partner.other = shares.second;
+    return partner;
 }
 
 std::vector<SceneNormal> normals_of(const Options& options) {
@@ -143,7 +143,7 @@ EnvironmentOptions environment_options(const Options& options) {
     out.fit = fit_options(options);
     out.normals = normals_of(options);
     const Renderer* renderer = renderer_of(options);
-    out.company = company_of(options, renderer ? renderer->company(out) : Company{});
+    out.mis = partner_of(options, renderer ? renderer->partner(out) : Partner{});
     out.codec = codec_of(options);
     out.source = source_of(options);
     return out;
@@ -163,7 +163,7 @@ LocalOptions local_options(const Options& options) {
         "shape", {{"small", LocalShape::small}, {"fast", LocalShape::fast}, {"auto", LocalShape::automatic}},
         out.shape);
     const Renderer* renderer = renderer_of(options);
-    out.company = company_of(options, renderer ? renderer->company(out) : Company{});
+    out.mis = partner_of(options, renderer ? renderer->partner(out) : Partner{});
     out.codec = codec_of(options);
     out.source = source_of(options);
     return out;

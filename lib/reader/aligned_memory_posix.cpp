@@ -17,7 +17,7 @@ namespace acdf {
 namespace {
 
 // Asks for large pages where whole ones lie in a block: of a system that gives them only to those who ask, each
-// page of 4 KiB costs a fault when it is first used, and draws look for places all over the tables.
+// page of 4 KiB costs a fault when it is first used, and samples read all over the tables.
 void ask_for_large_pages(void* block, std::size_t bytes) {
 #if defined(MADV_HUGEPAGE)
     const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(block);

@@ -136,9 +136,9 @@ File& File::operator=(File&& other) noexcept {
     blend_ = std::exchange(other.blend_, AcdfBlend{});
     fast_ = std::exchange(other.fast_, AcdfFast{});
     local_ = std::exchange(other.local_, nullptr);
-    lights_ = std::exchange(other.lights_, nullptr);
-    company_ = std::exchange(other.company_, nullptr);
-    places_ = std::exchange(other.places_, AcdfPlaceTable{});
+    bright_tiles_ = std::exchange(other.bright_tiles_, nullptr);
+    partner_ = std::exchange(other.partner_, nullptr);
+    visibility_ = std::exchange(other.visibility_, AcdfVisibilityTable{});
     portals_ = std::exchange(other.portals_, AcdfPortalTable{});
     views_ = std::exchange(other.views_, nullptr);
     nodes_ = std::exchange(other.nodes_, nullptr);
@@ -195,9 +195,9 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.blend_ = {parts.tiles, parts.splits, parts.tile_roots, parts.rows, parts.tree};
     loaded.fast_ = parts.fast;
     loaded.local_ = parts.local;
-    loaded.lights_ = parts.lights;
-    loaded.company_ = parts.company;
-    loaded.places_ = parts.places;
+    loaded.bright_tiles_ = parts.bright_tiles;
+    loaded.partner_ = parts.partner;
+    loaded.visibility_ = parts.visibility;
     loaded.portals_ = parts.portals;
     loaded.views_ = parts.views;
     loaded.nodes_ = parts.nodes;
@@ -263,7 +263,7 @@ int File::memory(AcdfMove* moves) const noexcept {
 EnvironmentView File::environment() const noexcept {
     return EnvironmentView({tree_, bins_ ? bins_[0].root : 0, axes_[ACDF_AXIS_PHI].resolution,
                             axes_[ACDF_AXIS_THETA].resolution, description_->total, description_->parameterization,
-                            halved_, company_, tree_units_});
+                            halved_, partner_, tree_units_});
 }
 
 LocalEnvironmentView File::local() const noexcept {
@@ -276,15 +276,15 @@ LocalEnvironmentView File::local() const noexcept {
                          description_->total,
                          description_->parameterization,
                          nullptr,
-                         company_,
+                         nullptr, // complete whatever the file is made for: to be used alone
                          tree_units_};
-    local.company = company_;
+    local.partner = partner_;
     local.bins = bins_;
-    local.lights = lights_;
-    local.light_count = local_->light_count;
+    local.bright_tiles = bright_tiles_;
+    local.bright_tile_count = local_->bright_tile_count;
     local.cosine_share = static_cast<double>(local_->cosine_share);
     local.tables = local_tables_;
-    local.places = places_;
+    local.visibility = visibility_;
     local.portals = portals_;
     local.fast = fast_;
     if (fast_.grid && local_tables_) acdf_local_use_upper(&local);
@@ -312,7 +312,7 @@ BrdfView File::brdf() const noexcept {
 TableView File::table() const noexcept {
     u32 indexed = 0;
     while (axes_[indexed].role == ACDF_AXIS_INDEXED) ++indexed; // rule 5012: one axis at least is sampled
-    return TableView({tree_, bins_, axes_, description_->axis_count, indexed, description_->total, company_,
+    return TableView({tree_, bins_, axes_, description_->axis_count, indexed, description_->total, partner_,
                       tree_units_, entries_});
 }
 

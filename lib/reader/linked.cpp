@@ -1,4 +1,4 @@
-// Draws and densities as symbols: loops over the inline functions, and waves.
+// Samples and pdfs as symbols: loops over the inline functions, and waves.
 #include "c_file.h"
 #include "memory.h"
 
@@ -18,7 +18,7 @@ using acdf::DirectionSample;
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr size_t kWave = 256; // directions and views of so many stay in the first cache
 
-// A direction that was drawn, if any.
+// A direction that was sampled, if any.
 float keep(const DirectionSample& sample, float direction[3]) {
     if (sample.pdf > 0.0f) std::memcpy(direction, sample.direction, sizeof sample.direction);
     return sample.pdf;
@@ -36,14 +36,14 @@ void for_each_item(std::size_t count, std::size_t each, Serve&& serve) {
         for (const std::size_t end = each < count - i ? i + each : count; i < end; ++i) serve(j, i);
 }
 
-// Draws `count` directions by draw(first, n, drawn), some of them at once.
+// Samples `count` directions by sample(first, n, sampled), some of them at once.
 template <class Draw>
 void draw_in_waves(std::size_t count, float* directions, float* pdfs, Draw&& draw) {
-    DirectionSample drawn[kWave];
+    DirectionSample sampled[kWave];
     for (std::size_t first = 0; first < count; first += kWave) {
         const std::size_t n = count - first < kWave ? count - first : kWave;
-        draw(first, n, drawn);
-        for (std::size_t i = 0; i < n; ++i) put(drawn[i], first + i, directions, pdfs);
+        draw(first, n, sampled);
+        for (std::size_t i = 0; i < n; ++i) put(sampled[i], first + i, directions, pdfs);
     }
 }
 
@@ -64,24 +64,24 @@ void put_numbers(bool found, int axes, double* u) {
 
 } // namespace
 
-float acdf_draw_environment(const AcdfFile* file, double u0, double u1, float direction[3]) {
+float acdf_sample_environment(const AcdfFile* file, double u0, double u1, float direction[3]) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0.0f;
     return keep(acdf_environment_sample(&file->environment, u0, u1), direction);
 }
 
-float acdf_density_environment(const AcdfFile* file, const float direction[3]) {
+float acdf_pdf_environment(const AcdfFile* file, const float direction[3]) {
     return file->file.kind() == ACDF_KIND_ENVIRONMENT ? acdf_environment_pdf(&file->environment, direction) : 0.0f;
 }
 
-int acdf_draw_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
-                                float* pdfs) {
+int acdf_sample_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
+                                  float* pdfs) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
     for (size_t i = 0; i < count; ++i)
         put(acdf_environment_sample(&file->environment, u[2 * i], u[2 * i + 1]), i, directions, pdfs);
     return 1;
 }
 
-int acdf_density_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs) {
+int acdf_pdf_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
     for (size_t i = 0; i < count; ++i) pdfs[i] = acdf_environment_pdf(&file->environment, directions + 3 * i);
     return 1;
@@ -94,22 +94,22 @@ int acdf_invert_environment_array(const AcdfFile* file, const float* directions,
     return 1;
 }
 
-float acdf_draw_local(const AcdfFile* file, const float normal[3], double u0, double u1, float direction[3]) {
+float acdf_sample_local(const AcdfFile* file, const float normal[3], double u0, double u1, float direction[3]) {
     if (file->file.kind() != ACDF_KIND_LOCAL) return 0.0f;
     return keep(acdf_local_sample(&file->local, normal, u0, u1), direction);
 }
 
-float acdf_density_local(const AcdfFile* file, const float normal[3], const float direction[3]) {
+float acdf_pdf_local(const AcdfFile* file, const float normal[3], const float direction[3]) {
     return file->file.kind() == ACDF_KIND_LOCAL ? acdf_local_pdf(&file->local, normal, direction) : 0.0f;
 }
 
-int acdf_draw_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
-                          float* directions, float* pdfs) {
+int acdf_sample_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
+                            float* directions, float* pdfs) {
     if (!serves(file, ACDF_KIND_LOCAL, each)) return 0;
     if (each == 1) {
         const acdf::LocalWavefront wavefront(file->file.local());
-        draw_in_waves(count, directions, pdfs, [&](size_t first, size_t n, DirectionSample* drawn) {
-            wavefront.sample(vectors_at(normals, first), pairs_at(u, first), n, drawn);
+        draw_in_waves(count, directions, pdfs, [&](size_t first, size_t n, DirectionSample* sampled) {
+            wavefront.sample(vectors_at(normals, first), pairs_at(u, first), n, sampled);
         });
         return 1;
     }
@@ -118,15 +118,15 @@ int acdf_draw_local_array(const AcdfFile* file, const float* normals, size_t eac
     for (size_t j = 0, first = 0; first < count; first += each, ++j) { // a point, looked up once, serves several
         const AcdfLocalPoint point = view.at(normals + 3 * j);
         draw_in_waves(std::min(each, count - first), directions + 3 * first, pdfs + first,
-                      [&](size_t from, size_t n, DirectionSample* drawn) {
-                          wavefront.sample(point, pairs_at(u, first + from), n, drawn);
+                      [&](size_t from, size_t n, DirectionSample* sampled) {
+                          wavefront.sample(point, pairs_at(u, first + from), n, sampled);
                       });
     }
     return 1;
 }
 
-int acdf_density_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
-                             size_t count, float* pdfs) {
+int acdf_pdf_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
+                         size_t count, float* pdfs) {
     if (!serves(file, ACDF_KIND_LOCAL, each)) return 0;
     if (each == 1) {
         acdf::LocalWavefront(file->file.local())
@@ -147,17 +147,17 @@ int acdf_irradiance_local_array(const AcdfFile* file, const float* normals, size
     return 1;
 }
 
-float acdf_draw_brdf(const AcdfFile* file, const float wo[3], double u0, double u1, float wi[3]) {
+float acdf_sample_brdf(const AcdfFile* file, const float wo[3], double u0, double u1, float wi[3]) {
     if (file->file.kind() != ACDF_KIND_BRDF) return 0.0f;
     return keep(acdf_brdf_sample(&file->brdf, wo, u0, u1), wi);
 }
 
-float acdf_density_brdf(const AcdfFile* file, const float wo[3], const float wi[3]) {
+float acdf_pdf_brdf(const AcdfFile* file, const float wo[3], const float wi[3]) {
     return file->file.kind() == ACDF_KIND_BRDF ? acdf_brdf_pdf(&file->brdf, wo, wi) : 0.0f;
 }
 
-int acdf_draw_brdf_array(const AcdfFile* file, const float* wo, size_t each, const double* u, size_t count,
-                         float* wi, float* pdfs) {
+int acdf_sample_brdf_array(const AcdfFile* file, const float* wo, size_t each, const double* u, size_t count,
+                           float* wi, float* pdfs) {
     if (!serves(file, ACDF_KIND_BRDF, each)) return 0;
     for_each_item(count, each, [&](size_t j, size_t i) {
         put(acdf_brdf_sample(&file->brdf, wo + 3 * j, u[2 * i], u[2 * i + 1]), i, wi, pdfs);
@@ -165,8 +165,8 @@ int acdf_draw_brdf_array(const AcdfFile* file, const float* wo, size_t each, con
     return 1;
 }
 
-int acdf_density_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
-                            float* pdfs) {
+int acdf_pdf_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
+                        float* pdfs) {
     if (!serves(file, ACDF_KIND_BRDF, each)) return 0;
     for_each_item(count, each,
                   [&](size_t j, size_t i) { pdfs[i] = acdf_brdf_pdf(&file->brdf, wo + 3 * j, wi + 3 * i); });
@@ -229,8 +229,8 @@ int acdf_brdf_waves_draw(const AcdfBrdfWaves* waves, const float* wo, size_t eac
                          float* wi, float* pdfs) {
     if (each == 0) return 0;
     float room[kWave][3];
-    draw_in_waves(count, wi, pdfs, [&](size_t first, size_t n, DirectionSample* drawn) {
-        waves->wavefront.sample(views_of(wo, each, first, n, room), pairs_at(u, first), n, drawn);
+    draw_in_waves(count, wi, pdfs, [&](size_t first, size_t n, DirectionSample* sampled) {
+        waves->wavefront.sample(views_of(wo, each, first, n, room), pairs_at(u, first), n, sampled);
     });
     return 1;
 }
@@ -275,18 +275,18 @@ uint32_t acdf_table_sampled_axes(const AcdfFile* file) {
 }
 uint32_t acdf_table_indexed_axes(const AcdfFile* file) { return file->table.indexed_count; }
 
-double acdf_draw_table(const AcdfFile* file, const uint32_t* index, const double* u, double* x) {
+double acdf_sample_table(const AcdfFile* file, const uint32_t* index, const double* u, double* x) {
     if (file->file.kind() != ACDF_KIND_TABLE || !has_index(file->table, index)) return 0.0;
     return acdf_table_sample(&file->table, index, u, x);
 }
 
-double acdf_density_table(const AcdfFile* file, const uint32_t* index, const double* x) {
+double acdf_pdf_table(const AcdfFile* file, const uint32_t* index, const double* x) {
     if (file->file.kind() != ACDF_KIND_TABLE || !has_index(file->table, index)) return 0.0;
     return acdf_table_pdf(&file->table, index, x);
 }
 
-int acdf_draw_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* u, size_t count,
-                          double* x, double* pdfs) {
+int acdf_sample_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* u, size_t count,
+                            double* x, double* pdfs) {
     if (!serves(file, ACDF_KIND_TABLE, each) || !has_index(file->table, index)) return 0;
     const AcdfTable& table = file->table;
     const uint32_t axes = acdf_table_sampled_count(&table);
@@ -297,8 +297,8 @@ int acdf_draw_table_array(const AcdfFile* file, const uint32_t* index, size_t ea
     return 1;
 }
 
-int acdf_density_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x,
-                             size_t count, double* pdfs) {
+int acdf_pdf_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x, size_t count,
+                         double* pdfs) {
     if (!serves(file, ACDF_KIND_TABLE, each) || !has_index(file->table, index)) return 0;
     const AcdfTable& table = file->table;
     const uint32_t axes = acdf_table_sampled_count(&table);

@@ -17,7 +17,7 @@ using ull = unsigned long long; // for printf
 
 constexpr u32 known_types[known_chunks] = {
     ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS,  ACDF_CHUNK_TREE,  ACDF_CHUNK_METADATA, ACDF_CHUNK_TILES,
-    ACDF_CHUNK_ROWS,        ACDF_CHUNK_LOCAL, ACDF_CHUNK_VIEWS, ACDF_CHUNK_COMPANY,  ACDF_CHUNK_PLACES,
+    ACDF_CHUNK_ROWS,        ACDF_CHUNK_LOCAL, ACDF_CHUNK_VIEWS, ACDF_CHUNK_PARTNER,  ACDF_CHUNK_VISIBILITY,
     ACDF_CHUNK_PORTALS,     ACDF_CHUNK_SUMS,  ACDF_CHUNK_GRID,  ACDF_CHUNK_HALVINGS};
 
 // Inflates a whole zlib stream to at most `out_size` bytes, and sets that to how many; null, or what is wrong.

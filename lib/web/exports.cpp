@@ -137,12 +137,13 @@ ACDF_EXPORT void acdf_web_metadata(const Opened* opened, u32 i, u32 out[4]) {
 }
 ACDF_EXPORT double acdf_web_share(const Opened* opened, const float* at) {
     if (opened->file.kind() == ACDF_KIND_ENVIRONMENT)
-        return static_cast<double>(opened->file.environment().recommended_share());
-    return opened->file.kind() == ACDF_KIND_LOCAL ? static_cast<double>(opened->file.local().recommended_share(at))
-                                                  : 1.0;
+        return static_cast<double>(opened->file.environment().recommended_light_share());
+    return opened->file.kind() == ACDF_KIND_LOCAL
+               ? static_cast<double>(opened->file.local().recommended_light_share(at))
+               : 1.0;
 }
 
-/// Draws for `count` pairs of random numbers: x y z pdf each.
+/// Samples for `count` pairs of random numbers: x y z pdf each.
 ACDF_EXPORT void acdf_web_sample(const Opened* opened, const float* at, const double* u, std::size_t count,
                                  float* out) {
     for (std::size_t i = 0; i < count; ++i) {

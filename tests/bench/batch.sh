@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What `acdf batch` costs beside the work of its jobs, as a table: batch.sh ACDF MAKE_BATCH_PROBES. Needs jq. The
-# figures of docs/farm.md, to be made on a quiet machine.
+# figures of docs/appendix/batch.md, to be made on a quiet machine.
 set -euo pipefail
 
 acdf=$1

@@ -5,7 +5,7 @@
 //   bench_brdf [KIB...]                            tables in Markdown; 64 and 128 by default
 //   bench_brdf --write FILE KIB                    a file of the first BRDF
 //   bench_brdf --count sample|pdf FILE N [walk]    N calls and nothing else, for callgrind
-#include "tests/bench/brdf_rivals.h"
+#include "tests/bench/brdf_baselines.h"
 #include "tests/bench/turns.h"
 
 #include "build/brdf.h"

@@ -56,7 +56,7 @@ struct Built {
     }
 };
 
-/// Numbers with 24 bits, as renderers draw them. Coherent ones go through the strata of a grid in its order, as
+/// Numbers with 24 bits, as renderers sample them. Coherent ones go through the strata of a grid in its order, as
 /// neighbouring pixels do that share a sequence.
 std::vector<float> numbers(bool coherent) {
     std::mt19937_64 random(7);
@@ -72,7 +72,7 @@ std::vector<float> numbers(bool coherent) {
     return u;
 }
 
-Directions drawn_directions(const EnvironmentView& view, const std::vector<float>& u) {
+Directions sampled_directions(const EnvironmentView& view, const std::vector<float>& u) {
     Directions out(kNumbers);
     for (std::size_t i = 0; i < kNumbers; ++i)
         std::memcpy(out[i].data(), view.sample(u[2 * i], u[2 * i + 1]).direction, sizeof out[i]);
@@ -137,7 +137,7 @@ void run(const compress::Target& target) {
         "\n| ns a call (of the full table's) | full table | alias table | hierarchical warp | 64 KiB | 16 KiB "
         "| 64 KiB, no lookup grid |\n|---|---|---|---|---|---|---|\n");
     const std::vector<float> u = numbers(false), coherent = numbers(true);
-    const Directions drawn = drawn_directions(plain, u), uniform = uniform_directions(kNumbers, 9);
+    const Directions sampled = sampled_directions(plain, u), uniform = uniform_directions(kNumbers, 9);
     const auto samples = [&](const std::vector<float>& given) {
         return std::vector<Candidate>{draws("full", full, given), draws("alias", alias, given),
                                       draws("warp", warp, given), draws("64", at_64, given),
@@ -152,7 +152,7 @@ void run(const compress::Target& target) {
     report("sample, coherent numbers", samples(coherent), false);
     report("sample, caches evicted", samples(u), true);
     report("pdf of uniform directions", pdfs(uniform), false);
-    report("pdf of sampled directions", pdfs(drawn), false);
+    report("pdf of sampled directions", pdfs(sampled), false);
     report("pdf of uniform directions, caches evicted", pdfs(uniform), true);
 }
 

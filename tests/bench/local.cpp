@@ -1,8 +1,9 @@
-// Time of a shading point, draws and densities of local environment files, with runtime tables and without, and
+// Time of a shading point, samples and densities of local environment files, with runtime tables and without, and
 // many at once, beside the full table of an environment of as many columns, which knows nothing of normals.
 //
 //   bench_local FILE.acdf...      tables in Markdown
-//   bench_local --count point|draw|pdf FILE N [walk|waves]     N calls and nothing else, for callgrind; waves: AVX2
+//   bench_local --count point|sample|pdf FILE N [walk|waves]     N calls and nothing else, for callgrind; waves:
+//   AVX2
 #include "tests/bench/directions.h"
 #include "tests/bench/full_table.h"
 #include "tests/bench/turns.h"
@@ -30,10 +31,10 @@ constexpr std::size_t kCalls = std::size_t{1} << 18; // before they repeat
 constexpr std::size_t kShared = 16;                  // calls a point, where a point has several
 constexpr std::size_t kWave = 4096;                  // calls at once
 
-/// What is asked: normals, pairs of numbers, directions anywhere and such as are drawn. Coherent ones go over a
+/// What is asked: normals, pairs of numbers, directions anywhere and such as are sampled. Coherent ones go over a
 /// sphere, and through the strata of the numbers, in the order of a picture's pixels.
 struct Questions {
-    Directions normals = uniform_directions(kCalls, 1), anywhere = uniform_directions(kCalls, 2), drawn{kCalls};
+    Directions normals = uniform_directions(kCalls, 1), anywhere = uniform_directions(kCalls, 2), sampled{kCalls};
     std::vector<std::array<float, 2>> u{kCalls};
     std::vector<std::array<double, 2>> wide{kCalls}; ///< u
 
@@ -53,7 +54,7 @@ struct Questions {
             }
             wide[i] = {u[i][0], u[i][1]};
             const AcdfDirectionSample s = view.sample(normals[i].data(), u[i][0], u[i][1]);
-            drawn[i] = {s.direction[0], s.direction[1], s.direction[2]};
+            sampled[i] = {s.direction[0], s.direction[1], s.direction[2]};
         }
     }
 };
@@ -69,8 +70,8 @@ Candidate each(const LocalEnvironmentView& view, const Questions& q, std::size_t
             }};
 }
 
-/// Draws at a normal that serves once.
-Candidate draw_each(const LocalEnvironmentView& view, const Questions& q) {
+/// Samples at a normal that serves once.
+Candidate sample_each(const LocalEnvironmentView& view, const Questions& q) {
     return {"", [&](std::size_t first, std::size_t count) {
                 for (std::size_t i = first; i < first + count; ++i)
                     keep(view.sample(q.normals[i].data(), q.u[i][0], q.u[i][1]));
@@ -78,7 +79,7 @@ Candidate draw_each(const LocalEnvironmentView& view, const Questions& q) {
 }
 
 /// Densities at a normal that serves once.
-Candidate density_each(const LocalEnvironmentView& view, const Questions& q, const Directions& directions) {
+Candidate pdf_each(const LocalEnvironmentView& view, const Questions& q, const Directions& directions) {
     return {"", [&](std::size_t first, std::size_t count) {
                 for (std::size_t i = first; i < first + count; ++i)
                     keep(view.pdf(q.normals[i].data(), directions[i].data()));
@@ -138,7 +139,7 @@ bool run(const char* path) {
     const Questions q(plain);
     std::printf(
         "\nA file of %llu bytes%s, with tables of %llu bytes; full table of %u x %u\n\n| ns a call (of the full "
-        "table's) | full table | walked | with tables | many, no vectors | many, AVX2 | many, AVX-512 "
+        "table's) | full table | no tables | tables | batch, no SIMD | batch, AVX2 | batch, AVX-512 "
         "|\n|---|---|---|---|---|---|---|\n",
         static_cast<unsigned long long>(tables.size()),
         fast.data().fast.grid ? " in the fast shape"
@@ -154,34 +155,34 @@ bool run(const char* path) {
         keep(view.sample(point, q.u[k][0], q.u[k][1]));
         keep(view.pdf(point, q.anywhere[k].data()));
     };
-    const auto drawn = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
-        keep(view.pdf(point, q.drawn[k].data()));
+    const auto sampled = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
+        keep(view.pdf(point, q.sampled[k].data()));
     };
-    const auto full_draw_of = [&full](const Questions& of) {
+    const auto full_sample_of = [&full](const Questions& of) {
         return [&](std::size_t i) { keep(full.sample(of.u[i][0], of.u[i][1])); };
     };
-    const auto full_draw = full_draw_of(q);
+    const auto full_sample = full_sample_of(q);
     const auto full_anywhere = [&](std::size_t i) { keep(full.pdf(q.anywhere[i].data())); };
-    const auto full_drawn = [&](std::size_t i) { keep(full.pdf(q.drawn[i].data())); };
+    const auto full_sampled = [&](std::size_t i) { keep(full.pdf(q.sampled[i].data())); };
     std::vector<DirectionSample> samples(kWave);
     std::vector<float> densities(kWave);
     const auto* normals = reinterpret_cast<const float(*)[3]>(q.normals.data());
     const auto* u = reinterpret_cast<const double(*)[2]>(q.wide.data());
-    const auto* directions_drawn = reinterpret_cast<const float(*)[3]>(q.drawn.data());
-    const auto draws_of = [&samples](const Questions& asked) -> Wave {
+    const auto* directions_sampled = reinterpret_cast<const float(*)[3]>(q.sampled.data());
+    const auto samples_of = [&samples](const Questions& asked) -> Wave {
         return [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
             wavefront.sample(reinterpret_cast<const float(*)[3]>(asked.normals.data()) + first,
                              reinterpret_cast<const double(*)[2]>(asked.wide.data()) + first, n, samples.data());
         };
     };
-    const Wave draws = draws_of(q);
-    const Wave shared_draws = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
+    const Wave draws = samples_of(q);
+    const Wave shared_samples = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
         for (std::size_t i = first; i < first + n; i += kShared)
             wavefront.sample(fast.at(normals[i]), u + i, kShared, &samples[i - first]);
     };
-    const Wave shared_densities = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
+    const Wave shared_pdfs = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
         for (std::size_t i = first; i < first + n; i += kShared)
-            wavefront.pdf(fast.at(normals[i]), directions_drawn + i, kShared, &densities[i - first]);
+            wavefront.pdf(fast.at(normals[i]), directions_sampled + i, kShared, &densities[i - first]);
     };
     const auto of = [&](const Directions& directions) -> Wave {
         return [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
@@ -190,38 +191,37 @@ bool run(const char* path) {
         };
     };
     const auto full_both = [&](std::size_t i) {
-        full_draw(i);
+        full_sample(i);
         full_anywhere(i);
     };
     const auto at_points = [&](std::size_t shared, const auto& ask) {
         return [&q, shared, ask](const LocalEnvironmentView& view) { return each(view, q, shared, ask); };
     };
-    const auto draw_once = [](const Questions& of) {
-        return [&of](const LocalEnvironmentView& view) { return draw_each(view, of); };
+    const auto sample_once = [](const Questions& of) {
+        return [&of](const LocalEnvironmentView& view) { return sample_each(view, of); };
     };
     const auto once = [&q](const Directions& directions) {
-        return [&](const LocalEnvironmentView& view) { return density_each(view, q, directions); };
+        return [&](const LocalEnvironmentView& view) { return pdf_each(view, q, directions); };
     };
-    report("shading point (full table: a draw)", all, at_points(1, nothing), full_draw, nullptr);
-    report("draw at a normal of its own", all, draw_once(q), full_draw, draws);
-    report("one of 16 draws at a point", all, at_points(kShared, draw), full_draw, shared_draws);
-    report("density of a uniform direction at a normal of its own", all, once(q.anywhere), full_anywhere,
-           of(q.anywhere));
-    report("density of a drawn direction at a normal of its own", all, once(q.drawn), full_drawn, of(q.drawn));
-    report("one of 16 densities at a point", all, at_points(kShared, drawn), full_drawn, shared_densities);
-    report("shading point, draw, and density of another direction (full table: both)", all, at_points(1, both),
+    report("shading point (full table: a sample)", all, at_points(1, nothing), full_sample, nullptr);
+    report("sample, a normal per call", all, sample_once(q), full_sample, draws);
+    report("sample, 16 per shading point", all, at_points(kShared, draw), full_sample, shared_samples);
+    report("pdf of a uniform direction, a normal per call", all, once(q.anywhere), full_anywhere, of(q.anywhere));
+    report("pdf of a sampled direction, a normal per call", all, once(q.sampled), full_sampled, of(q.sampled));
+    report("pdf, 16 per shading point", all, at_points(kShared, sampled), full_sampled, shared_pdfs);
+    report("shading point, sample, and pdf of another direction (full table: both)", all, at_points(1, both),
            full_both, nullptr);
     const Questions coherent(plain, true);
-    report("draw, coherent normals and numbers", all, draw_once(coherent), full_draw_of(coherent),
-           draws_of(coherent));
+    report("sample, coherent normals and numbers", all, sample_once(coherent), full_sample_of(coherent),
+           samples_of(coherent));
     all.evicted = true;
-    report("draw at a normal of its own, caches evicted", all, draw_once(q), full_draw, draws);
-    report("density of a uniform direction at a normal of its own, caches evicted", all, once(q.anywhere),
-           full_anywhere, of(q.anywhere));
+    report("sample, a normal per call, caches evicted", all, sample_once(q), full_sample, draws);
+    report("pdf of a uniform direction, a normal per call, caches evicted", all, once(q.anywhere), full_anywhere,
+           of(q.anywhere));
     return true;
 }
 
-/// N calls many at once; 'r': draws, else densities.
+/// N calls many at once; 'r': samples, else densities.
 void count_waves(const LocalWavefront& wavefront, const Questions& q, char what, std::size_t calls) {
     std::vector<DirectionSample> samples(kWave);
     std::vector<float> densities(kWave);
@@ -239,7 +239,7 @@ bool count(char** arguments, const char* how) {
     if (!open(arguments[1], std::strcmp(how, "walk") != 0, file)) return false;
     const LocalEnvironmentView view = file.local();
     const Questions q(view);
-    const char what = arguments[0][1]; // point, draw, pdf
+    const char what = arguments[0][1]; // point, sample, pdf
     const std::size_t calls = std::strtoull(arguments[2], nullptr, 10);
     if (std::strcmp(how, "waves") == 0) {
         count_waves(LocalWavefront(view, Instructions::avx2), q, what, calls);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes the times of local files into docs/performance.md: tests/bench/local.sh BUILD DATA. BUILD: a release build with
+# Writes the times of local files into docs/appendix/performance-local.md: tests/bench/local.sh BUILD DATA. BUILD: a release build with
 # -DACDF_BUILD_BENCHMARKS=ON; DATA holds probes/. Needs valgrind. Best on a machine that does nothing else.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -18,13 +18,13 @@ local_file spruit_sunrise_4k.exr fast_wide --shape fast
 . "$here/instructions.sh"
 {
     "$build/tests/bench/bench_local" "$work"/{small,large,octahedral,wide,fast,fast_wide}.acdf
-    printf '\n| instructions, 1 MiB, noon_grass | shading point | draw | density |\n|---|---|---|---|\n'
+    printf '\n| instructions, 1 MiB, noon_grass | shading point | sample | pdf |\n|---|---|---|---|\n'
     for how in tables walk; do
         if [ $how = walk ]; then options=(walk); else options=(); fi
-        printf '| by %s' $how
+        printf '| %s' "$([ $how = tables ] && echo tables || echo 'no tables')"
         for what in point draw pdf; do printf ' | %s' "$(instructions bench_local $what "$work/large.acdf" "${options[@]}")"; done
         printf ' |\n'
     done
-    printf '| many at once, AVX2 | | %s | %s |\n' "$(instructions bench_local draw "$work/large.acdf" waves)" \
+    printf '| batch, AVX2 | | %s | %s |\n' "$(instructions bench_local sample "$work/large.acdf" waves)" \
         "$(instructions bench_local pdf "$work/large.acdf" waves)"
 } | "$here/../../docs/make/put_table.sh" local

@@ -30,13 +30,13 @@ double now() {
     return 1e9 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec);
 }
 
-struct Place {
+struct ShadingPoint {
     SurfaceFrame frame;
     float wo[3];
     double u[kDraws][2];
 };
 
-std::vector<Place> places() {
+std::vector<ShadingPoint> shading_points() {
     std::mt19937_64 random(1);
     const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
     const auto direction = [&](double low, float out[3]) {
@@ -47,14 +47,14 @@ std::vector<Place> places() {
         out[1] = static_cast<float>(r * s);
         out[2] = static_cast<float>(z);
     };
-    std::vector<Place> out(kPoints);
-    for (Place& place : out) {
+    std::vector<ShadingPoint> out(kPoints);
+    for (ShadingPoint& point_ : out) {
         float n[3], wo[3];
         direction(-1.0, n);
         direction(0.1, wo);
-        place.frame = surface_frame(n);
-        place.frame.to_world(wo, place.wo);
-        for (auto& u : place.u)
+        point_.frame = surface_frame(n);
+        point_.frame.to_world(wo, point_.wo);
+        for (auto& u : point_.u)
             for (double& x : u) x = uniform();
     }
     return out;
@@ -77,37 +77,37 @@ struct Timed {
 };
 
 template <class AnyLobe>
-void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, const std::vector<Place>& all,
+void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, const std::vector<ShadingPoint>& all,
          std::vector<Timed>& out) {
     using Sampler = ProductSampler<AnyLobe>;
     for (const int parts : {1, 8, 16, 32, 64, 96}) {
         const Sampler sampler(light, lobe, ProductOptions{parts});
-        out.push_back({name + ", `at`, " + std::to_string(parts) + " parts",
+        out.push_back({name + ", `at`, " + std::to_string(parts) + (parts == 1 ? " sub-region" : " sub-regions"),
                        [=, &all] {
-                           for (const Place& place : all)
-                               sink = static_cast<float>(sampler.at(place.frame, place.wo).share);
+                           for (const ShadingPoint& point_ : all)
+                               sink = static_cast<float>(sampler.at(point_.frame, point_.wo).share);
                        },
                        double{kPoints}});
     }
     const Sampler sampler(light, lobe, ProductOptions{64});
     std::vector<typename Sampler::Point> points;
-    for (const Place& place : all) points.push_back(sampler.at(place.frame, place.wo));
-    out.push_back({name + ", `sample`, 64 parts",
+    for (const ShadingPoint& point_ : all) points.push_back(sampler.at(point_.frame, point_.wo));
+    out.push_back({name + ", `sample`, 64 sub-regions",
                    [=, &all] {
                        for (std::size_t i = 0; i < kPoints; ++i)
                            for (const auto& u : all[i].u) sink = sampler.sample(points[i], u[0], u[1]).pdf;
                    },
                    double{kPoints * kDraws}});
-    out.push_back({name + ", `sample` of 16 at once, 64 parts",
+    out.push_back({name + ", `sample` of 16 at once, 64 sub-regions",
                    [=, &all] {
-                       ProductSample drawn[kDraws];
+                       ProductSample sampled[kDraws];
                        for (std::size_t i = 0; i < kPoints; ++i) {
-                           sampler.sample(points[i], kDraws, all[i].u, drawn);
-                           for (const ProductSample& s : drawn) sink = s.pdf;
+                           sampler.sample(points[i], kDraws, all[i].u, sampled);
+                           for (const ProductSample& s : sampled) sink = s.pdf;
                        }
                    },
                    double{kPoints * kDraws}});
-    out.push_back({name + ", `sample`, 64 parts, other numbers each turn",
+    out.push_back({name + ", `sample`, 64 sub-regions, other random numbers each turn",
                    [=] {
                        for (const auto& point : points)
                            for (std::size_t k = 0; k < kDraws; ++k) {
@@ -116,33 +116,33 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
                            }
                    },
                    double{kPoints * kDraws}});
-    out.push_back({name + ", `sample` of 16 at once, 64 parts, other numbers each turn",
+    out.push_back({name + ", `sample` of 16 at once, 64 sub-regions, other random numbers each turn",
                    [=] {
                        double u[kDraws][2];
-                       ProductSample drawn[kDraws];
+                       ProductSample sampled[kDraws];
                        for (const auto& point : points) {
                            for (auto& pair : u)
                                for (double& x : pair) x = other_number();
-                           sampler.sample(point, kDraws, u, drawn);
-                           for (const ProductSample& s : drawn) sink = s.pdf;
+                           sampler.sample(point, kDraws, u, sampled);
+                           for (const ProductSample& s : sampled) sink = s.pdf;
                        }
                    },
                    double{kPoints * kDraws}});
-    out.push_back({name + ", `at` of 64 parts and 16 samples there, a sample",
+    out.push_back({name + ", `at` of 64 sub-regions and 16 samples one by one, per sample",
                    [=, &all] {
-                       for (const Place& place : all) {
-                           const auto point = sampler.at(place.frame, place.wo);
-                           for (const auto& u : place.u) sink = sampler.sample(point, u[0], u[1]).pdf;
+                       for (const ShadingPoint& point_ : all) {
+                           const auto point = sampler.at(point_.frame, point_.wo);
+                           for (const auto& u : point_.u) sink = sampler.sample(point, u[0], u[1]).pdf;
                        }
                    },
                    double{kPoints * kDraws}});
-    out.push_back({name + ", `at` of 64 parts and 16 samples at once, a sample",
+    out.push_back({name + ", `at` of 64 sub-regions and 16 samples at once, per sample",
                    [=, &all] {
-                       ProductSample drawn[kDraws];
-                       for (const Place& place : all) {
-                           const auto point = sampler.at(place.frame, place.wo);
-                           sampler.sample(point, kDraws, place.u, drawn);
-                           for (const ProductSample& s : drawn) sink = s.pdf;
+                       ProductSample sampled[kDraws];
+                       for (const ShadingPoint& point_ : all) {
+                           const auto point = sampler.at(point_.frame, point_.wo);
+                           sampler.sample(point, kDraws, point_.u, sampled);
+                           for (const ProductSample& s : sampled) sink = s.pdf;
                        }
                    },
                    double{kPoints * kDraws}});
@@ -154,7 +154,7 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
         (void)lobe.at(wo, views[i]);
         acdf_local_at(&light, all[i].frame.normal, &normals[i]);
     }
-    out.push_back({name + ", a sample of each strategy and the other's density, mean of both",
+    out.push_back({name + ", MIS: a sample of each strategy and the other's pdf, mean of both",
                    [=, &all] {
                        for (std::size_t i = 0; i < kPoints; ++i)
                            for (std::size_t k = 0; k < kDraws; ++k) {
@@ -183,7 +183,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "usage: bench_product LOCAL.acdf BRDF.acdf\n");
         return 1;
     }
-    const std::vector<Place> all = places();
+    const std::vector<ShadingPoint> all = shading_points();
     std::vector<Timed> timed;
     add(light.local().data(), measure::GgxLobe(0.3), "GGX lobe", all, timed);
     add(light.local().data(), BrdfLobe(brdf.brdf().data()), "BRDF file", all, timed);

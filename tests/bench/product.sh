@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes the times of sampling the product into docs/performance.md: tests/bench/product.sh BUILD DATA. BUILD: a release build with
+# Writes the times of sampling the product into docs/appendix/performance-product.md: tests/bench/product.sh BUILD DATA. BUILD: a release build with
 # -DACDF_BUILD_BENCHMARKS=ON; DATA holds probes/ and brdfs/.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

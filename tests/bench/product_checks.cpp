@@ -62,7 +62,7 @@ struct Counts {
     int disagree = 0, violations = 0, beyond = 0;
 };
 
-/// Of the density by which parts are drawn, whatever their shape.
+/// Of the density by which parts are sampled, whatever their shape.
 template <class Point>
 double cut_integral(const AcdfLocal& light, const Point& point) {
     const AcdfGrid grid = acdf_environment_grid(&light.environment);
@@ -71,7 +71,7 @@ double cut_integral(const AcdfLocal& light, const Point& point) {
     for (std::uint32_t y = 0; y < grid.rows; ++y)
         for (std::uint32_t x = 0; x < grid.columns; ++x) {
             const AcdfRange square[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
-            const AcdfDirectionSample at = acdf_grid_place(&grid, square, middle, 1.0);
+            const AcdfDirectionSample at = acdf_grid_position(&grid, square, middle, 1.0);
             const float pdf = point.light.what == ACDF_LOCAL_FAST
                                   ? acdf_fast_cut_pdf(&light, &point.light, &point.fast, at.direction)
                                   : acdf_cut_pdf(&light, &point.light, &point.cut, at.direction);
@@ -80,7 +80,7 @@ double cut_integral(const AcdfLocal& light, const Point& point) {
     return sum;
 }
 
-/// Whether a point's light is drawn by parts.
+/// Whether a point's light is sampled by parts.
 template <class Point>
 bool has_parts(const Point& point) {
     return (point.light.what == ACDF_LOCAL_BLEND && point.cut.count > 0) ||
@@ -112,7 +112,7 @@ struct Squares {
     void place(const Square& square, double u, double v, float out[3]) const {
         const AcdfRange range[2] = {{square.at[0], square.at[0] + 1, 0.0}, {square.at[1], square.at[1] + 1, 0.0}};
         const double fractions[2] = {u, v};
-        const AcdfDirectionSample at = acdf_grid_place(&grid, range, fractions, 1.0);
+        const AcdfDirectionSample at = acdf_grid_position(&grid, range, fractions, 1.0);
         std::copy_n(at.direction, 3, out);
     }
 };
@@ -190,7 +190,7 @@ Counts check(const AcdfLocal& light, const AnyLobe& lobe, int pairs) {
             float any[3];
             random.direction(2.0 * random() - 1.0, any);
             out.violations += reflected(any) > 0.0 && !(sampler.pdf(point, any) > 0.0f);
-            const bool first = random.bits() % 2 != 0; // what the light or the lobe alone draw
+            const bool first = random.bits() % 2 != 0; // what the light or the lobe alone sample
             ProductSample t = first ? acdf_local_sample_at(&light, &point.light, random(), random())
                                     : lobe.sample(point.lobe, random(), random());
             if (!(t.pdf > 0.0f)) continue;

@@ -1,4 +1,4 @@
-"""The table of docs/python.md: a million calls over arrays, in Python and in C++ on the same files. See python.sh."""
+"""The table of docs/appendix/python.md: a million calls over arrays, in Python and in C++ on the same files. See python.sh."""
 
 import subprocess
 import sys

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# python.sh [BUILD]: prints the table of docs/python.md, from files of 64 KiB to 1 MiB of the built-in probe.
+# python.sh [BUILD]: prints the table of docs/appendix/python.md, from files of 64 KiB to 1 MiB of the built-in probe.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 build=$(realpath "${1:-build/release}")

@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
     };
     std::vector<double> u(2 * kCalls);
     std::vector<Vector> normals(kCalls), directions(kCalls);
-    std::vector<acdf::DirectionSample> drawn(kCalls);
+    std::vector<acdf::DirectionSample> sampled(kCalls);
     std::vector<float> pdf(kCalls);
     for (std::size_t i = 0; i < kCalls; ++i) {
         const double x = static_cast<double>(i);
@@ -52,22 +52,22 @@ int main(int argc, char** argv) {
     }
     const auto keep = [&] {
         for (std::size_t i = 0; i < kCalls; ++i)
-            for (int k = 0; k < 3; ++k) directions[i].v[k] = drawn[i].direction[k];
+            for (int k = 0; k < 3; ++k) directions[i].v[k] = sampled[i].direction[k];
     };
     const auto views = reinterpret_cast<const float(*)[3]>(normals.data());
     const auto numbers = reinterpret_cast<const double(*)[2]>(u.data());
     const auto towards = reinterpret_cast<const float(*)[3]>(directions.data());
     std::printf("environment.sample %.1f\n", nanoseconds([&] {
-                    for (std::size_t i = 0; i < kCalls; ++i) drawn[i] = sky.sample(numbers[i][0], numbers[i][1]);
+                    for (std::size_t i = 0; i < kCalls; ++i) sampled[i] = sky.sample(numbers[i][0], numbers[i][1]);
                 }));
     keep();
     std::printf("environment.pdf %.1f\n", nanoseconds([&] {
                     for (std::size_t i = 0; i < kCalls; ++i) pdf[i] = sky.pdf(towards[i]);
                 }));
-    std::printf("local.sample %.1f\n", nanoseconds([&] { local.sample(views, numbers, kCalls, drawn.data()); }));
+    std::printf("local.sample %.1f\n", nanoseconds([&] { local.sample(views, numbers, kCalls, sampled.data()); }));
     keep();
     std::printf("local.pdf %.1f\n", nanoseconds([&] { local.pdf(views, towards, kCalls, pdf.data()); }));
-    std::printf("brdf.sample %.1f\n", nanoseconds([&] { brdf.sample(views, numbers, kCalls, drawn.data()); }));
+    std::printf("brdf.sample %.1f\n", nanoseconds([&] { brdf.sample(views, numbers, kCalls, sampled.data()); }));
     keep();
     std::printf("brdf.pdf %.1f\n", nanoseconds([&] { brdf.pdf(views, towards, kCalls, pdf.data()); }));
 }

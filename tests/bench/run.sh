@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes what docs/performance.md says of environment files, BRDFs and tables: ratios of calls to those of other samplers, and
+# Writes docs/appendix/performance-environment.md, performance-brdf.md and performance-table.md: ratios of calls to those of other samplers, and
 # instruction counts of a fixed run.
 #
 #   tests/bench/run.sh BUILD [WIDTHS...]      BUILD: a release build with -DACDF_BUILD_BENCHMARKS=ON
@@ -26,7 +26,7 @@ put=$here/../../docs/make/put_table.sh
     cat "$work/times"
     printf '\n| instructions a call, 128 KiB | sample | pdf |\n|---|---|---|\n'
     for walk in '' walk; do
-        printf '| tables%s | %s | %s |\n' "${walk:+ left out}" "$(instructions bench_brdf sample "$work/128" $walk)" \
+        printf '| %s | %s | %s |\n' "${walk:+no }tables" "$(instructions bench_brdf sample "$work/128" $walk)" \
             "$(instructions bench_brdf pdf "$work/128" $walk)"
     done
 } | "$put" brdf

@@ -1,4 +1,4 @@
-// Time of draws and densities of table files, beside the full conditional CDFs and an alias table of the same
+// Time of samples and densities of table files, beside the full conditional CDFs and an alias table of the same
 // numbers in floats. Writes tables in Markdown.
 #include "tests/bench/turns.h"
 
@@ -44,7 +44,7 @@ std::vector<float> numbers(const std::vector<std::uint32_t>& sides) {
 }
 
 /// Cumulative sums along the last axis, of their totals along the one before, and so on, all in floats: one search
-/// an axis draws, one load tells a density. Points are in units of cells.
+/// an axis samples, one load tells a density. Points are in units of cells.
 class FullTable {
 public:
     FullTable(const std::vector<float>& values, std::vector<std::uint32_t> sides)
@@ -107,8 +107,8 @@ public:
 
     float sample(const float* u, float* x) const {
         const float at = u[0] * static_cast<float>(entries_.size()); // enough numbers for a million cells
-        const auto drawn = std::min(static_cast<std::size_t>(at), entries_.size() - 1);
-        std::size_t cell = u[1] < entries_[drawn].keep ? drawn : entries_[drawn].alias;
+        const auto sampled = std::min(static_cast<std::size_t>(at), entries_.size() - 1);
+        std::size_t cell = u[1] < entries_[sampled].keep ? sampled : entries_[sampled].alias;
         const float pdf = entries_[cell].pdf;
         for (std::size_t axis = sides_.size(); axis-- > 0; cell /= sides_[axis])
             x[axis] = static_cast<float>(cell % sides_[axis]) + u[axis];
@@ -149,20 +149,20 @@ struct Asked {
     }
 };
 
-template <class Rival>
-Candidate draws(const Rival& rival, const Asked& u) {
+template <class Baseline>
+Candidate draws(const Baseline& baseline, const Asked& u) {
     return {"", [&](std::size_t first, std::size_t count) {
                 float x[3];
                 for (std::size_t i = first; i < first + count; ++i) {
-                    keep(rival.sample(u.narrow[i].data(), x));
+                    keep(baseline.sample(u.narrow[i].data(), x));
                     keep(x);
                 }
             }};
 }
-template <class Rival>
-Candidate densities(const Rival& rival, const Asked& x) {
+template <class Baseline>
+Candidate densities(const Baseline& baseline, const Asked& x) {
     return {"", [&](std::size_t first, std::size_t count) {
-                for (std::size_t i = first; i < first + count; ++i) keep(rival.pdf(x.narrow[i].data()));
+                for (std::size_t i = first; i < first + count; ++i) keep(baseline.pdf(x.narrow[i].data()));
             }};
 }
 
@@ -197,14 +197,14 @@ bool run(const std::vector<std::uint32_t>& sides) {
     const FullTable full(values, sides);
     const AliasCells alias(values, sides);
     const Asked u(nullptr, 2), anywhere(&sides, 3);
-    Asked drawn(nullptr, 4);
+    Asked sampled(nullptr, 4);
     for (std::size_t i = 0; i < kPoints; ++i) {
-        view.sample(nullptr, u.wide[i].data(), drawn.wide[i].data());
+        view.sample(nullptr, u.wide[i].data(), sampled.wide[i].data());
         for (std::size_t axis = 0; axis < sides.size(); ++axis)
-            drawn.narrow[i][axis] = std::min(static_cast<float>(drawn.wide[i][axis]),
-                                             static_cast<float>(sides[axis]) * (1.0f - 0x1p-24f));
+            sampled.narrow[i][axis] = std::min(static_cast<float>(sampled.wide[i][axis]),
+                                               static_cast<float>(sides[axis]) * (1.0f - 0x1p-24f));
     }
-    const auto ours_draws = [&u](const acdf::TableView& of) -> Candidate {
+    const auto ours_samples = [&u](const acdf::TableView& of) -> Candidate {
         return {"", [&](std::size_t first, std::size_t count) {
                     double x[3];
                     for (std::size_t i = first; i < first + count; ++i) {
@@ -222,18 +222,18 @@ bool run(const std::vector<std::uint32_t>& sides) {
     for (const std::uint32_t side : sides) shape += (shape.empty() ? "" : " x ") + std::to_string(side);
     std::printf("\n%s numbers; a file of %zu bytes with tables of %llu, %.4g relative variance; full table "
                 "%zu\n\n| ns a call (of the full "
-                "table's) | full table | alias table | the file | walked |\n|---|---|---|---|---|\n",
+                "table's) | full table | alias table | file | no tables |\n|---|---|---|---|---|\n",
                 shape.c_str(), made.bytes.size(), static_cast<unsigned long long>(file.table_bytes()),
                 made.accuracy.relative_variance, 2 * 4 * values.size());
     for (const bool evicted : {false, true}) {
-        report(evicted ? "draw, caches evicted" : "draw",
-               {draws(full, u), draws(alias, u), ours_draws(view), ours_draws(walk)}, evicted);
-        report(evicted ? "density of uniform points, caches evicted" : "density of uniform points",
+        report(evicted ? "sample, caches evicted" : "sample",
+               {draws(full, u), draws(alias, u), ours_samples(view), ours_samples(walk)}, evicted);
+        report(evicted ? "pdf of uniform points, caches evicted" : "pdf of uniform points",
                {densities(full, anywhere), densities(alias, anywhere), ours(view, anywhere), ours(walk, anywhere)},
                evicted);
     }
-    report("density of drawn points",
-           {densities(full, drawn), densities(alias, drawn), ours(view, drawn), ours(walk, drawn)}, false);
+    report("pdf of sampled points",
+           {densities(full, sampled), densities(alias, sampled), ours(view, sampled), ours(walk, sampled)}, false);
     return true;
 }
 

@@ -1,10 +1,10 @@
-// Whether a GPU draws what the processor draws, and tells the same densities.
+// Whether a GPU samples what the processor samples, and tells the same densities.
 //
 //   cuda_agree [--exact] COUNT FILE...            environments, local environments, BRDFs and tables
 //   cuda_agree [--exact] COUNT --product PARTS LOCAL BRDF
 //
-// A row of a table in Markdown for each file, by its runtime tables and walked: out of COUNT draws and as many
-// directions, those that are not the processor's to the bit, by how much they differ at most, and draws whose
+// A row of a table in Markdown for each file, by its runtime tables and walked: out of COUNT samples and as many
+// directions, those that are not the processor's to the bit, by how much they differ at most, and samples whose
 // density is another one when it is asked for. --exact: fails unless all are the same. Skips (77) where there is no
 // device.
 #include "device_answers.h"
@@ -25,20 +25,20 @@ constexpr std::size_t kBatch = std::size_t{1} << 20;
 /// Differences between a GPU's answers and the processor's.
 struct Differences {
     std::size_t draws = 0, densities = 0, others = 0; ///< not the same to the bit
-    std::size_t own = 0;                              ///< draws whose direction has another density
-    std::size_t far = 0;                              ///< draws that lie more than 1e-5 away
+    std::size_t own = 0;                              ///< samples whose direction has another density
+    std::size_t far = 0;                              ///< samples that lie more than 1e-5 away
     double most_own = 0.0, most_other = 0.0;          ///< relative
 
     static bool same(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
     static double relative(double a, double b) { return a == b ? 0.0 : std::fabs(a / b - 1.0); }
     void add(const Answer& device, const Answer& host) {
         double away = 0.0;
-        bool drawn = true;
+        bool sampled = true;
         for (int k = 0; k < ACDF_MAX_AXES; ++k) {
-            drawn &= same(device.place[k], host.place[k]);
+            sampled &= same(device.place[k], host.place[k]);
             away = std::max(away, std::fabs(device.place[k] - host.place[k]));
         }
-        draws += !drawn;
+        draws += !sampled;
         far += !(away < 1e-5);
         densities += !same(device.density, host.density);
         others += !same(device.other, host.other);
@@ -83,7 +83,7 @@ bool of_file(const char* path, std::size_t count) {
         const DeviceFile device(file);
         std::string name = path;
         name.erase(0, name.find_last_of('/') + 1);
-        name += tables ? ", tables" : ", walked";
+        name += tables ? ", tables" : ", no tables";
         switch (file.kind()) {
         case ACDF_KIND_ENVIRONMENT:
             exact &= compare(name, OfEnvironment{device(file.environment())}, {file.environment()}, file, count);
@@ -109,7 +109,7 @@ bool of_product(int parts, const char* light_path, const char* surface_path, std
         std::exit(1);
     }
     const DeviceFile light_there(light), surface_there(surface);
-    return compare("product, " + std::to_string(parts) + " parts",
+    return compare("product, " + std::to_string(parts) + " sub-regions",
                    OfProduct{light_there(light.local()), surface_there(surface.brdf()), parts},
                    {light.local(), surface.brdf(), parts}, light, count);
 }
@@ -130,8 +130,9 @@ int main(int argc, char** argv) {
     }
     const std::size_t count = std::strtoul(argv[at++], nullptr, 10);
     bool same = true;
-    std::printf("| file | draws | of other directions | beyond 1e-5 | of other densities | own density is another "
-                "(processor) | by | directions of other densities | by |\n|---|---|---|---|---|---|---|---|---|\n");
+    std::printf(
+        "| file | samples | other direction | beyond 1e-5 | other pdf | pdf of the sampled direction differs "
+        "(processor) | by | directions with another pdf | by |\n|---|---|---|---|---|---|---|---|---|\n");
     if (std::strcmp(argv[at], "--product") == 0 && argc >= at + 4)
         same = of_product(std::atoi(argv[at + 1]), argv[at + 2], argv[at + 3], count);
     else

@@ -1,4 +1,4 @@
-// Time of draws and densities on a GPU, beside samplers of all texels of a map.
+// Time of samples and densities on a GPU, beside samplers of all texels of a map.
 //
 //   cuda_bench environments COLUMNS FILE...   environments and their exported tables (.bin); maps of so
 //                                             many columns are what they are compared with
@@ -7,8 +7,8 @@
 //
 // Tables in Markdown: ns a call, several million calls a launch, the least of 20. Skips (77) where there is no
 // device.
+#include "baselines.h"
 #include "exported.h"
-#include "rivals.h"
 #include "views_timed.h"
 
 #include "../bench/directions.h"
@@ -89,7 +89,7 @@ struct Nothing {
     __device__ float pdf(const float w[3]) const { return w[0] + w[1] + w[2]; }
 };
 
-/// Directions that a sampler draws, for calls that ask for densities there.
+/// Directions that a sampler samples, for calls that ask for densities there.
 template <class View>
 __global__ void draw_all(View view, const float2* u, float4* out) {
     const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
@@ -97,21 +97,21 @@ __global__ void draw_all(View view, const float2* u, float4* out) {
     out[i] = {s.direction[0], s.direction[1], s.direction[2], s.pdf};
 }
 template <class View>
-Asked at_drawn(const View& view, const Asked& asked, const DeviceArray<float4>& place) {
+Asked at_sampled(const View& view, const Asked& asked, const DeviceArray<float4>& place) {
     draw_all<<<kCalls / kThreads, kThreads>>>(view, asked.numbers, place.data());
     require(cudaDeviceSynchronize(), "kernel");
     return {asked.numbers, place.data(), asked.normals};
 }
 
 template <class View>
-Timed time_density_of(const View& view, const Asked& asked) {
-    return time(DensityOf<View>{view, asked});
+Timed time_pdf_of(const View& view, const Asked& asked) {
+    return time(PdfOf<View>{view, asked});
 }
 template <class View>
-Row of_rival(const char* name, const View& view, const Questions& q, const Asked& drawn) {
+Row of_baseline(const char* name, const View& view, const Questions& q, const Asked& sampled) {
     return {name,
-            {time(DrawOf<View>{view, q.any()}), time(DrawOf<View>{view, q.coherent()}),
-             time_density_of(view, q.any()), time_density_of(view, drawn)}};
+            {time(SampleOf<View>{view, q.any()}), time(SampleOf<View>{view, q.coherent()}),
+             time_pdf_of(view, q.any()), time_pdf_of(view, sampled)}};
 }
 
 std::vector<char> bytes_of(const char* path) {
@@ -155,17 +155,17 @@ struct Exported {
 void environments(std::uint32_t columns, int count, char** paths, const Questions& q) {
     const DeviceArray<float4> place(kCalls);
     std::vector<Row> rows;
-    std::optional<Rivals> rivals;
-    Asked drawn = q.any();
+    std::optional<Baselines> baselines;
+    Asked sampled = q.any();
     if (columns > 0) {
-        rivals.emplace(acdf_bench::sky(columns));
-        drawn = at_drawn(rivals->alias(), q.any(), place);
-        rows.push_back(of_rival("nothing but what is asked", Nothing{}, q, drawn));
-        rows.push_back(of_rival("full table", rivals->full(), q, drawn));
-        rows.push_back(of_rival("alias table", rivals->alias(), q, drawn));
+        baselines.emplace(acdf_bench::sky(columns));
+        sampled = at_sampled(baselines->alias(), q.any(), place);
+        rows.push_back(of_baseline("reading and summing only", Nothing{}, q, sampled));
+        rows.push_back(of_baseline("full table", baselines->full(), q, sampled));
+        rows.push_back(of_baseline("alias table", baselines->alias(), q, sampled));
         Row warp{"hierarchical warp",
-                 {time(DrawOf<WarpTable>{rivals->warp(), q.any()}),
-                  time(DrawOf<WarpTable>{rivals->warp(), q.coherent()})}};
+                 {time(SampleOf<WarpTable>{baselines->warp(), q.any()}),
+                  time(SampleOf<WarpTable>{baselines->warp(), q.coherent()})}};
         warp.times.resize(4);
         rows.push_back(warp);
     }
@@ -174,20 +174,21 @@ void environments(std::uint32_t columns, int count, char** paths, const Question
             const Exported exported(paths[i]);
             const std::uint32_t* words = exported.words.data();
             rows.push_back({name_of(paths[i]) + ", exported",
-                            {time_exported_draw(words, q.any()), time_exported_draw(words, q.coherent()),
-                             time_exported_density(words, q.any()), time_exported_density(words, drawn)}});
+                            {time_exported_sample(words, q.any()), time_exported_sample(words, q.coherent()),
+                             time_exported_pdf(words, q.any()), time_exported_pdf(words, sampled)}});
             continue;
         }
         for (const bool tables : {true, false}) {
             const Opened opened(paths[i], tables);
             const acdf::EnvironmentView view = (*opened.there)(opened.file.environment());
-            rows.push_back({name_of(paths[i]) + (tables ? "" : ", walked"),
-                            {time_draw(view, q.any()), time_draw(view, q.coherent()), time_density(view, q.any()),
-                             time_density(view, drawn)}});
+            rows.push_back({name_of(paths[i]) + (tables ? "" : ", no tables"),
+                            {time_sample(view, q.any()), time_sample(view, q.coherent()), time_pdf(view, q.any()),
+                             time_pdf(view, sampled)}});
         }
     }
     print(("ns a call, " + std::to_string(columns) + " columns").c_str(),
-          "draw | draw, coherent numbers | density of uniform directions | density of drawn directions", rows);
+          "sample | sample, coherent numbers | pdf of uniform directions | pdf of sampled directions",
+          rows);
 }
 
 void others(int count, char** paths, const Questions& q) {
@@ -197,8 +198,8 @@ void others(int count, char** paths, const Questions& q) {
             const Exported exported(paths[i]);
             const std::uint32_t* words = exported.words.data();
             const bool surface = ends_with(paths[i], "brdf.bin");
-            const auto draw = surface ? time_exported_brdf_draw : time_exported_draw;
-            const auto density = surface ? time_exported_brdf_density : time_exported_density;
+            const auto draw = surface ? time_exported_brdf_sample : time_exported_sample;
+            const auto density = surface ? time_exported_brdf_pdf : time_exported_pdf;
             Row row{name_of(paths[i]) + ", exported",
                     {draw(words, q.any()), draw(words, q.coherent()), density(words, q.any())}};
             if (!surface) row.times.insert(row.times.begin() + 2, Timed{});
@@ -207,23 +208,24 @@ void others(int count, char** paths, const Questions& q) {
         }
         for (const bool tables : {true, false}) {
             const Opened opened(paths[i], tables);
-            const std::string name = name_of(paths[i]) + (tables ? "" : ", walked");
+            const std::string name = name_of(paths[i]) + (tables ? "" : ", no tables");
             if (opened.file.kind() == ACDF_KIND_LOCAL) {
                 const acdf::LocalEnvironmentView view = (*opened.there)(opened.file.local());
                 local.push_back({name,
-                                 {time_draw(view, q.any()), time_draw(view, q.coherent()),
-                                  time_draws(view, q.any()), time_density(view, q.any())}});
+                                 {time_sample(view, q.any()), time_sample(view, q.coherent()),
+                                  time_samples(view, q.any()), time_pdf(view, q.any())}});
             } else {
                 const acdf::BrdfView view = (*opened.there)(opened.file.brdf());
                 brdf.push_back(
-                    {name, {time_draw(view, q.any()), time_draw(view, q.coherent()), time_density(view, q.any())}});
+                    {name, {time_sample(view, q.any()), time_sample(view, q.coherent()), time_pdf(view, q.any())}});
             }
         }
     }
     if (!local.empty())
         print("ns a call, local",
-              "point and draw | 32 threads at a normal | one of 16 draws at a point | point and density", local);
-    if (!brdf.empty()) print("ns a call, BRDF", "draw | 32 threads at a view | density", brdf);
+              "point and sample | 32 threads at a normal | sample, 16 per shading point | point and pdf",
+              local);
+    if (!brdf.empty()) print("ns a call, BRDF", "sample | 32 threads at a view | pdf", brdf);
 }
 
 } // namespace

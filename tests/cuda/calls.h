@@ -14,16 +14,16 @@ struct Question {
 };
 
 struct Answer {
-    double place[ACDF_MAX_AXES]; ///< what is drawn: a direction, or a point of a table
-    double density;              ///< of the draw
+    double place[ACDF_MAX_AXES]; ///< what is sampled: a direction, or a point of a table
+    double density;              ///< of the sample
     double again;                ///< of its direction
     double other;                ///< of the question's direction
 };
 
-ACDF_METHOD inline Answer answer(const acdf::DirectionSample& drawn, float again, float other) {
+ACDF_METHOD inline Answer answer(const acdf::DirectionSample& sampled, float again, float other) {
     Answer out = {};
-    for (int k = 0; k < 3; ++k) out.place[k] = double{drawn.direction[k]};
-    out.density = double{drawn.pdf};
+    for (int k = 0; k < 3; ++k) out.place[k] = double{sampled.direction[k]};
+    out.density = double{sampled.pdf};
     out.again = double{again};
     out.other = double{other};
     return out;
@@ -40,7 +40,7 @@ struct OfEnvironment {
 struct OfLocal {
     acdf::LocalEnvironmentView view;
     ACDF_METHOD Answer operator()(const Question& q) const {
-        const AcdfLocalPoint point = view.has_places() ? view.at(q.position, q.normal) : view.at(q.normal);
+        const AcdfLocalPoint point = view.has_visibility() ? view.at(q.position, q.normal) : view.at(q.normal);
         const acdf::DirectionSample s = view.sample(point, q.u[0], q.u[1]);
         return answer(s, view.pdf(point, s.direction), view.pdf(point, q.direction));
     }

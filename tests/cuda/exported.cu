@@ -53,14 +53,12 @@ struct BrdfDensity {
 
 } // namespace
 
-Timed time_exported_draw(const std::uint32_t* tables, const Asked& asked) { return time(Draw{tables, asked}); }
-Timed time_exported_density(const std::uint32_t* tables, const Asked& asked) {
-    return time(Density{tables, asked});
-}
-Timed time_exported_brdf_draw(const std::uint32_t* tables, const Asked& asked) {
+Timed time_exported_sample(const std::uint32_t* tables, const Asked& asked) { return time(Draw{tables, asked}); }
+Timed time_exported_pdf(const std::uint32_t* tables, const Asked& asked) { return time(Density{tables, asked}); }
+Timed time_exported_brdf_sample(const std::uint32_t* tables, const Asked& asked) {
     return time(BrdfDraw{tables, asked});
 }
-Timed time_exported_brdf_density(const std::uint32_t* tables, const Asked& asked) {
+Timed time_exported_brdf_pdf(const std::uint32_t* tables, const Asked& asked) {
     return time(BrdfDensity{tables, asked});
 }
 

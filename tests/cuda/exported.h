@@ -7,9 +7,9 @@
 
 namespace acdf_cuda {
 
-Timed time_exported_draw(const std::uint32_t* tables, const Asked& asked);
-Timed time_exported_density(const std::uint32_t* tables, const Asked& asked);
-Timed time_exported_brdf_draw(const std::uint32_t* tables, const Asked& asked);
-Timed time_exported_brdf_density(const std::uint32_t* tables, const Asked& asked);
+Timed time_exported_sample(const std::uint32_t* tables, const Asked& asked);
+Timed time_exported_pdf(const std::uint32_t* tables, const Asked& asked);
+Timed time_exported_brdf_sample(const std::uint32_t* tables, const Asked& asked);
+Timed time_exported_brdf_pdf(const std::uint32_t* tables, const Asked& asked);
 
 } // namespace acdf_cuda

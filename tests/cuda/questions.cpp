@@ -43,13 +43,13 @@ std::vector<Answer> all_answers(const Call& call, const std::vector<Question>& a
 
 std::vector<Question> questions(std::size_t count, unsigned batch, const acdf::File& file) {
     std::vector<Question> out(count);
-    const AcdfPlaces* scene = file.kind() == ACDF_KIND_LOCAL ? file.local().data().places.header : nullptr;
+    const AcdfVisibility* scene = file.kind() == ACDF_KIND_LOCAL ? file.local().data().visibility.header : nullptr;
     on_all_cores(count, [&](std::size_t first, std::size_t last, std::size_t core) {
         Random random(1000 * batch + core);
         for (std::size_t i = first; i < last; ++i) {
             Question& q = out[i];
             for (double& u : q.u) u = uniform(random);
-            if (i % 2 == 0) // floats, as renderers draw them
+            if (i % 2 == 0) // floats, as renderers sample them
                 for (double& u : q.u) u = std::min(static_cast<double>(static_cast<float>(u)), 1.0 - 0x1p-24);
             unit_vector(random, -1.0, q.direction);
             unit_vector(random, -1.0, q.normal);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# run.sh BUILD DATA [COLUMNS...]: writes what docs/performance.md says of a graphics card. BUILD: a release build with
+# run.sh BUILD DATA [COLUMNS...]: writes docs/appendix/performance-gpu.md. BUILD: a release build with
 # -DACDF_BUILD_CUDA=ON and -DACDF_BUILD_BENCHMARKS=ON; DATA holds probes/ and brdfs/. COLUMNS of the maps that environments are
 # compared with: 1024 4096 16384, which take 10 GiB.
 set -euo pipefail

@@ -17,7 +17,7 @@ struct Above {
 
 } // namespace
 
-Timed time_draw(const acdf::BrdfView& view, const Asked& asked) { return time(DrawAt<Above>{{view}, asked}); }
-Timed time_density(const acdf::BrdfView& view, const Asked& asked) { return time(DensityAt<Above>{{view}, asked}); }
+Timed time_sample(const acdf::BrdfView& view, const Asked& asked) { return time(SampleAt<Above>{{view}, asked}); }
+Timed time_pdf(const acdf::BrdfView& view, const Asked& asked) { return time(PdfAt<Above>{{view}, asked}); }
 
 } // namespace acdf_cuda

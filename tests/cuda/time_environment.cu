@@ -2,11 +2,11 @@
 
 namespace acdf_cuda {
 
-Timed time_draw(const acdf::EnvironmentView& view, const Asked& asked) {
-    return time(DrawOf<acdf::EnvironmentView>{view, asked});
+Timed time_sample(const acdf::EnvironmentView& view, const Asked& asked) {
+    return time(SampleOf<acdf::EnvironmentView>{view, asked});
 }
-Timed time_density(const acdf::EnvironmentView& view, const Asked& asked) {
-    return time(DensityOf<acdf::EnvironmentView>{view, asked});
+Timed time_pdf(const acdf::EnvironmentView& view, const Asked& asked) {
+    return time(PdfOf<acdf::EnvironmentView>{view, asked});
 }
 
 } // namespace acdf_cuda

@@ -5,7 +5,7 @@ namespace {
 
 constexpr unsigned kDraws = 16;
 
-/// As many draws at one point.
+/// As many samples at one point.
 struct Draws {
     acdf::LocalEnvironmentView view;
     Asked asked;
@@ -24,14 +24,14 @@ struct Draws {
 
 } // namespace
 
-Timed time_draw(const acdf::LocalEnvironmentView& view, const Asked& asked) {
-    return time(DrawAt<acdf::LocalEnvironmentView>{view, asked});
+Timed time_sample(const acdf::LocalEnvironmentView& view, const Asked& asked) {
+    return time(SampleAt<acdf::LocalEnvironmentView>{view, asked});
 }
-Timed time_draws(const acdf::LocalEnvironmentView& view, const Asked& asked) {
+Timed time_samples(const acdf::LocalEnvironmentView& view, const Asked& asked) {
     return time(Draws{view, asked}, kDraws);
 }
-Timed time_density(const acdf::LocalEnvironmentView& view, const Asked& asked) {
-    return time(DensityAt<acdf::LocalEnvironmentView>{view, asked});
+Timed time_pdf(const acdf::LocalEnvironmentView& view, const Asked& asked) {
+    return time(PdfAt<acdf::LocalEnvironmentView>{view, asked});
 }
 
 } // namespace acdf_cuda

@@ -7,22 +7,22 @@
 
 namespace acdf_cuda {
 
-Timed time_draw(const acdf::EnvironmentView& view, const Asked& asked);
-Timed time_density(const acdf::EnvironmentView& view, const Asked& asked);
+Timed time_sample(const acdf::EnvironmentView& view, const Asked& asked);
+Timed time_pdf(const acdf::EnvironmentView& view, const Asked& asked);
 
 /// A shading point, and a draw, 16 draws or a density there.
-Timed time_draw(const acdf::LocalEnvironmentView& view, const Asked& asked);
-Timed time_draws(const acdf::LocalEnvironmentView& view, const Asked& asked);
-Timed time_density(const acdf::LocalEnvironmentView& view, const Asked& asked);
+Timed time_sample(const acdf::LocalEnvironmentView& view, const Asked& asked);
+Timed time_samples(const acdf::LocalEnvironmentView& view, const Asked& asked);
+Timed time_pdf(const acdf::LocalEnvironmentView& view, const Asked& asked);
 
 /// Normals are views; directions are turned above the surface.
-Timed time_draw(const acdf::BrdfView& view, const Asked& asked);
-Timed time_density(const acdf::BrdfView& view, const Asked& asked);
+Timed time_sample(const acdf::BrdfView& view, const Asked& asked);
+Timed time_pdf(const acdf::BrdfView& view, const Asked& asked);
 
 #ifdef __CUDACC__
-/// Of all views and rivals that draw without a normal.
+/// Of all views and baselines that draw without a normal.
 template <class View>
-struct DrawOf {
+struct SampleOf {
     View view;
     Asked asked;
     __device__ float operator()(unsigned i) const {
@@ -32,7 +32,7 @@ struct DrawOf {
     }
 };
 template <class View>
-struct DensityOf {
+struct PdfOf {
     View view;
     Asked asked;
     __device__ float operator()(unsigned i) const {
@@ -43,7 +43,7 @@ struct DensityOf {
 };
 /// The same given a normal or a view.
 template <class View>
-struct DrawAt {
+struct SampleAt {
     View view;
     Asked asked;
     __device__ float operator()(unsigned i) const {
@@ -55,7 +55,7 @@ struct DrawAt {
     }
 };
 template <class View>
-struct DensityAt {
+struct PdfAt {
     View view;
     Asked asked;
     __device__ float operator()(unsigned i) const {

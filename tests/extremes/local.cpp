@@ -102,7 +102,7 @@ TEST(ExtremeLocal, TexelsOfCoarseMapsAreCovered) {
         }
 }
 
-// Nothing can be drawn where nothing shines: pdf 0, and a sample that says so, whatever the numbers.
+// Nothing can be sampled where nothing shines: pdf 0, and a sample that says so, whatever the numbers.
 TEST(ExtremeLocal, DarkHemispheresDrawNothing) {
     const Target nadir =
         texel_target(kColumns, kRows, [](std::uint32_t, std::uint32_t r) { return r == kRows - 1; });

@@ -53,7 +53,7 @@ def is_near(value, wanted):
     return abs(value - wanted) <= max(float(np.spacing(np.float32(abs(wanted)))), 2.0**-29)
 
 
-def is_density(value, wanted):
+def is_pdf(value, wanted):
     return value == wanted if wanted == 0 or not math.isfinite(wanted) else abs(value - wanted) <= DENSITY * wanted
 
 
@@ -87,12 +87,12 @@ def compare_direction_row(view, row, fail, where):
     place = {"position": numbers(row, ["px", "py", "pz"])} if "px" in row else {}
     found = view.pdf(*given, wanted_direction, **place)
     if row["call"] == "pdf":
-        return fail.check(is_density(found, wanted), f"{where}: {found}")
+        return fail.check(is_pdf(found, wanted), f"{where}: {found}")
     *direction, pdf = view.sample(*given, *numbers(row, ["u0", "u1"]), **place)
     same = [float(np.float32(x)) for x in wanted_direction] == direction
     fail.check(all(map(is_near, direction, wanted_direction)), f"{where}: {direction}")
     # A neighbouring float has another density where that varies fast: then it is found for the direction told.
-    fail.check(is_density(pdf if same or not isinstance(view, Brdf) else found, wanted), f"{where}: {pdf}")
+    fail.check(is_pdf(pdf if same or not isinstance(view, Brdf) else found, wanted), f"{where}: {pdf}")
     fail.check((found > 0) == (wanted > 0), f"{where}: found again {found}")
 
 
@@ -150,10 +150,10 @@ def hex_examples():
 def examples_of_the_text(fail):
     """What §9 says of its three files."""
     smallest, second, halved = map(load, hex_examples())
-    fail.check(is_density(smallest.pdf((0.0, 0.0, 1.0)), float(np.float32(1 / (4 * math.pi)))), "smallest file")
+    fail.check(is_pdf(smallest.pdf((0.0, 0.0, 1.0)), float(np.float32(1 / (4 * math.pi)))), "smallest file")
     left, right = 64 / 255 * 8 / (2 * math.pi * 3), 191 / 255 * 8 / (2 * math.pi * 5)
-    fail.check(is_density(second.pdf((-0.6, 0.0, 0.8)), float(np.float32(0.5 * left))), "second file, the seam")
-    fail.check(is_density(second.pdf((0.6, 0.0, 0.8)), float(np.float32(right))), "second file, right")
+    fail.check(is_pdf(second.pdf((-0.6, 0.0, 0.8)), float(np.float32(0.5 * left))), "second file, the seam")
+    fail.check(is_pdf(second.pdf((0.6, 0.0, 0.8)), float(np.float32(right))), "second file, right")
     fail.check(second.pdf((0.0, 0.6, -0.8)) == 0.0, "second file, below")
     told = (-0.219401, 0.623990, 0.75, 0.108987)
     fail.check(np.allclose(second.sample(0.1, 0.25), told, rtol=0, atol=1e-6), "second file, a sample")
@@ -271,7 +271,7 @@ FRESH = [["env", "sky.pfm", *options.split()] for options in (
     "--fit uniform --knots 8x8 --compress zlib")]
 FRESH += [["local", "sky.pfm", *options.split()] for options in (
     "--budget 24KiB --shape small", "--budget 24KiB --shape small --cosine-share 0.25 --compress zlib", "--no-sharing --cells 24",
-    "--budget 24KiB --with cosine", "--budget 24KiB --shape fast", "--budget 48KiB --shape fast --compress zlib",
+    "--budget 24KiB --mis cosine", "--budget 24KiB --shape fast", "--budget 48KiB --shape fast --compress zlib",
     "--no-sharing --normals 5x3 --fit cdf --knots 6x6 --cosine-share 0.1",
     "--no-sharing --normals 5x3 --fit uniform --knots 6x6 --compress zlib")]
 FRESH += [["brdf", *options.split()] for options in (

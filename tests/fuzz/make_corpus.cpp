@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
     write(folder / "local", lit_local().encode());
     write(folder / "fast", fast_lit_local().encode());
     write(folder / "separate", separate_local().encode());
-    write(folder / "places", regional_local().encode());
+    write(folder / "visibility", regional_local().encode());
     write(folder / "portals", windowed_local().encode());
     write(folder / "brdf", shared_brdf().encode());
     write(folder / "separate_brdf", separate_brdf().encode());

@@ -18,7 +18,7 @@ bool is_unit(const float v[3]) {
     for (int k = 0; k < 3; ++k) square += double{v[k]} * v[k];
     return std::fabs(square - 1.0) < 2e-6;
 }
-bool is_density(double pdf) { return pdf >= 0.0 && std::isfinite(pdf); }
+bool is_pdf(double pdf) { return pdf >= 0.0 && std::isfinite(pdf); }
 bool in_unit_square(const double u[2]) { return u[0] >= 0.0 && u[0] <= 1.0 && u[1] >= 0.0 && u[1] <= 1.0; }
 
 void sample_everything(const acdf::EnvironmentView& view, FuzzRandom& random) {
@@ -32,7 +32,7 @@ void sample_everything(const acdf::EnvironmentView& view, FuzzRandom& random) {
         require(view.invert(s.direction, u) && in_unit_square(u));
         float any[3];
         random.any_vector(any);
-        require(is_density(static_cast<double>(view.pdf(any))));
+        require(is_pdf(static_cast<double>(view.pdf(any))));
         random.unit_vector(any, false);
         require(view.invert(any, u) == (view.pdf(any) > 0.0f));
     }
@@ -65,24 +65,23 @@ void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom& rando
         random.any_vector(any);
         const double u0 = random.any_u(), u1 = random.any_u();
         const acdf::DirectionSample s = view.sample(normal, u0, u1);
-        require(is_density(static_cast<double>(s.pdf)) && is_density(view.irradiance(normal)));
-        require(is_density(static_cast<double>(view.pdf(normal, any))));
+        require(is_pdf(static_cast<double>(s.pdf)) && is_pdf(view.irradiance(normal)));
+        require(is_pdf(static_cast<double>(view.pdf(normal, any))));
         const AcdfLocalPoint point = view.at(normal);
         const acdf::DirectionSample again = view.sample(point, u0, u1);
         require(again.pdf == s.pdf && view.pdf(point, any) == view.pdf(normal, any));
         (void)view.stored(normal);
         float position[3];
         random.any_vector(position);
-        if (n % 2 == 1 && view.has_places()) // else hardly any lies in the cells
+        if (n % 2 == 1 && view.has_visibility()) // else hardly any lies in the cells
             for (int k = 0; k < 3; ++k) {
-                const AcdfPlaces& cells = *view.data().places.header;
+                const AcdfVisibility& cells = *view.data().visibility.header;
                 position[k] = static_cast<float>(double{cells.low[k]} +
                                                  (double{cells.high[k]} - double{cells.low[k]}) * random.uniform());
             }
         const AcdfLocalPoint placed = view.at(position, normal);
         const acdf::DirectionSample seen = view.sample(placed, u0, u1);
-        require(is_density(static_cast<double>(seen.pdf)) &&
-                is_density(static_cast<double>(view.pdf(placed, any))));
+        require(is_pdf(static_cast<double>(seen.pdf)) && is_pdf(static_cast<double>(view.pdf(placed, any))));
         require(seen.pdf == 0.0f || (is_unit(seen.direction) && view.pdf(placed, seen.direction) > 0.0f));
         if (s.pdf == 0.0f) continue;
         require(is_unit(s.direction) && view.pdf(normal, s.direction) > 0.0f);
@@ -98,10 +97,10 @@ void sample_everything(const acdf::BrdfView& view, FuzzRandom& random) {
         random.mostly_unit_vector(n, wo, true);
         random.any_vector(any);
         const acdf::DirectionSample s = view.sample(wo, random.any_u(), random.any_u());
-        require(is_density(static_cast<double>(s.pdf)) && is_density(view.albedo(wo)));
+        require(is_pdf(static_cast<double>(s.pdf)) && is_pdf(view.albedo(wo)));
         require(s.pdf == 0.0f || is_unit(s.direction));
-        require(is_density(static_cast<double>(view.pdf(wo, any))));
-        require(is_density(static_cast<double>(view.pdf(wo, s.direction))));
+        require(is_pdf(static_cast<double>(view.pdf(wo, any))));
+        require(is_pdf(static_cast<double>(view.pdf(wo, s.direction))));
         double u[2];
         if (view.invert(wo, s.direction, u)) require(in_unit_square(u));
         if (view.invert(wo, any, u)) require(in_unit_square(u));
@@ -117,10 +116,10 @@ void sample_everything(const acdf::TableView& view, FuzzRandom& random) {
             index[i] = random.below(view.data().axes[i].resolution + 1);
         for (double& v : u) v = random.any_u();
         const double pdf = view.sample(index, u, x);
-        require(is_density(pdf) && (pdf > 0.0) == (view.share(index) > 0.0));
+        require(is_pdf(pdf) && (pdf > 0.0) == (view.share(index) > 0.0));
         require(view.pdf(index, x) == pdf || pdf == 0.0);
         require(view.invert(index, x, back) || pdf == 0.0);
-        require(is_density(view.pdf(index, u)));
+        require(is_pdf(view.pdf(index, u)));
     }
 }
 

@@ -7,8 +7,8 @@
 
 namespace acdf_test {
 
-/// Draws, evaluates and inverts with random numbers, directions, normals, views and indices of any kind, in C++ and
-/// in C, one call at a time and in waves. `bytes`: what the file was read from. Aborts where a promise of
+/// Samples, evaluates and inverts with random numbers, directions, normals, views and indices of any kind, in C++
+/// and in C, one call at a time and in waves. `bytes`: what the file was read from. Aborts where a promise of
 /// acdf/reader.h breaks.
 void sample_everything(const acdf::File& file, const void* bytes, std::size_t size);
 

@@ -1,4 +1,4 @@
-// Many draws and densities at once, by whatever instructions this processor has, of any file that was accepted:
+// Many samples and densities at once, by whatever instructions this processor has, of any file that was accepted:
 // those of single calls, to the bit.
 #pragma once
 
@@ -73,7 +73,7 @@ inline void wavefront_is_the_view(const acdf::LocalEnvironmentView& view, FuzzRa
     local_wavefront_is_the_view(acdf::LocalEnvironmentView(large.local), random);
 }
 
-/// With a lobe that is the cosine, drawn around the normal.
+/// With a lobe that is the cosine, sampled around the normal.
 inline void product_at_once_is_the_product(const acdf::LocalEnvironmentView& view, FuzzRandom& random) {
     const auto density = [](const float*, const float* wi) { return wi[2] > 0.0f ? wi[2] / float(ACDF_PI) : 0.0f; };
     const auto draw = [&](const float* wo, double u0, double u1) {

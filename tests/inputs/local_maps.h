@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/inputs/irradiance.h"
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/inputs/synthetic.h"
 
 #include "compress/local/fit.h"
@@ -80,7 +80,7 @@ inline std::vector<std::uint8_t> local_bytes(const acdf::compress::Target& targe
         LocalFit fit = fit_local(target, bins, options.size);
         description.shares = std::move(fit.shares);
         description.chunks = shared_chunks(fit.shared);
-        description.chunks.push_back(local_chunk(cosine, fit.lights));
+        description.chunks.push_back(local_chunk(cosine, fit.bright_tiles));
         return store(fit.tree, description, options.codec);
     }
     FitOptions each;
@@ -100,7 +100,7 @@ inline bool find_square(const acdf::compress::Target& target, const float direct
 }
 
 /// The direction at a place in texels; a row's middle is that of its angles.
-inline Normal place_direction(const acdf::compress::Target& target, double column, double row) {
+inline Normal direction_at_position(const acdf::compress::Target& target, double column, double row) {
     Normal out;
     if (target.parameterization == ACDF_PARAM_OCTAHEDRAL) {
         double d[3];
@@ -128,9 +128,10 @@ struct LocalMap {
         if (!status.ok()) throw std::runtime_error(status.message);
         for (std::uint32_t r = 0; r < target.rows; ++r)
             for (std::uint32_t c = 0; c < target.columns; ++c) {
-                centres.push_back(place_direction(target, c + 0.5, r + 0.5));
+                centres.push_back(direction_at_position(target, c + 0.5, r + 0.5));
                 for (int k = 0; k < 4; ++k)
-                    quarters.push_back(place_direction(target, c + 0.25 + 0.5 * (k % 2), r + 0.25 + 0.5 * (k / 2)));
+                    quarters.push_back(
+                        direction_at_position(target, c + 0.25 + 0.5 * (k % 2), r + 0.25 + 0.5 * (k / 2)));
             }
     }
     LocalMap(const LocalMap&) = delete;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # clean_root.sh PACKAGES SOURCE MAKE_SKY: a Debian that has never seen acdf installs the packages that debian.sh left in PACKAGES
-# by apt; there `acdf env` makes a file, Python draws from it, and a program is built against the library with
+# by apt; there `acdf env` makes a file, Python samples from it, and a program is built against the library with
 # find_package(acdf). Only where it is asked for (ctest -C packages -L packages): it needs root, mmdebstrap and a mirror of
 # Debian, and fetches some hundreds of packages.
 set -euo pipefail

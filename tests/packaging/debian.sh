@@ -94,11 +94,11 @@ import ctypes, sys
 
 library = ctypes.CDLL(sys.argv[1])
 library.acdf_open.restype = ctypes.c_void_p
-library.acdf_draw_environment.restype = library.acdf_density_environment.restype = ctypes.c_float
+library.acdf_sample_environment.restype = library.acdf_pdf_environment.restype = ctypes.c_float
 file = ctypes.c_void_p(library.acdf_open(b"sky.acdf", None))
 direction = (ctypes.c_float * 3)()
-pdf = library.acdf_draw_environment(file, ctypes.c_double(0.3), ctypes.c_double(0.4), direction)
-assert pdf > 0 and library.acdf_density_environment(file, direction) == pdf
+pdf = library.acdf_sample_environment(file, ctypes.c_double(0.3), ctypes.c_double(0.4), direction)
+assert pdf > 0 and library.acdf_pdf_environment(file, direction) == pdf
 CHECK
 
 # Pages and completions.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """recipes.py ROOT CMAKE [--wheel]: what pyproject.toml, the vcpkg port and the Conan recipe say, as far as it can be checked without
 their programs: versions are those of the project, and CMake takes the options, configures with them and installs what they
-name. `--wheel` builds the wheel's contents, too, and draws from them (minutes)."""
+name. `--wheel` builds the wheel's contents, too, and samples from them (minutes)."""
 import json
 import os
 import pathlib

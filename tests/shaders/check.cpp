@@ -16,11 +16,11 @@ namespace {
 constexpr double kNear = 1e-5, kSame = 1e-3;
 // In the fast shape rows have weights that are whole numbers, 2^12 in all or more: one may be one more or less.
 constexpr double kNearOnGrids = 3.0 / 4096.0;
-// Draws of another cell than the reader's, and directions of another density: next to borders.
+// Samples of another cell than the reader's, and directions of another density: next to borders.
 constexpr double kMostOthers = 1e-4;
 
 struct Differences {
-    std::size_t drawn = 0, other_cells = 0, not_told = 0, rounded = 0, other_densities = 0;
+    std::size_t sampled = 0, other_cells = 0, not_told = 0, rounded = 0, other_pdfs = 0;
     double farthest = 0.0, own = 0.0;
 };
 
@@ -60,15 +60,15 @@ private:
     float wo_[3] = {};
 };
 
-void compare_draw(const Reader& reader, const std::uint32_t* words, const float* draw, double own,
-                  Differences& found) {
+void compare_sample(const Reader& reader, const std::uint32_t* words, const float* draw, double own,
+                    Differences& found) {
     const acdf::DirectionSample told = reader.sample(words[0] * 0x1p-32, words[1] * 0x1p-32);
     const double pdf = draw[3];
     if (!(pdf > 0.0)) {
         found.not_told += told.pdf > 0.0f;
         return;
     }
-    ++found.drawn;
+    ++found.sampled;
     found.own = std::max(found.own, relative(pdf, own));
     const double of_reader = relative(pdf, reader.pdf(draw));
     found.not_told += !(of_reader <= reader.same(draw));
@@ -93,22 +93,23 @@ int check(const acdf::File& file, std::size_t count, const std::string& folder, 
     Reader reader(file);
     for (std::size_t i = 0; i < count; ++i) {
         reader.at(&normals[4 * i]);
-        compare_draw(reader, &words[2 * i], &draws[4 * i], densities[2 * i + 1], found);
+        compare_sample(reader, &words[2 * i], &draws[4 * i], densities[2 * i + 1], found);
         const float* direction = &directions[4 * i];
-        found.other_densities += !(relative(reader.pdf(direction), densities[2 * i]) <= reader.same(direction));
+        found.other_pdfs += !(relative(reader.pdf(direction), densities[2 * i]) <= reader.same(direction));
     }
     const double own = found.own * 0x1p24;
     std::printf(
-        "%zu draws: %zu of another cell, the others at most %.2g off; %zu whose density the reader does not tell, "
+        "%zu samples: %zu of another cell, the others at most %.2g off; %zu whose density the reader does not "
+        "have, "
         "%zu by more than is rounded; own density off by %.1f steps of 2^-24\n%zu directions: %zu of another "
         "density\n",
-        found.drawn, found.other_cells, found.farthest, found.not_told, found.rounded, own, count,
-        found.other_densities);
+        found.sampled, found.other_cells, found.farthest, found.not_told, found.rounded, own, count,
+        found.other_pdfs);
     const double most = kMostOthers * static_cast<double>(count);
     const bool right = static_cast<double>(found.other_cells) <= most &&
                        static_cast<double>(found.not_told) <= most / 10 &&
                        static_cast<double>(found.rounded) <= most &&
-                       static_cast<double>(found.other_densities) <= most && 2 * found.drawn > count && own <= ulps;
+                       static_cast<double>(found.other_pdfs) <= most && 2 * found.sampled > count && own <= ulps;
     return right ? 0 : 1;
 }
 

@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
     const uint32_t* tables = acdf_tables;
 #endif
     count = size / (4 * sizeof(float));
-    snprintf(path, sizeof path, "%s/draws.bin", folder);
+    snprintf(path, sizeof path, "%s/samples.bin", folder);
     draws = fopen(path, "wb");
     snprintf(path, sizeof path, "%s/densities.bin", folder);
     densities = fopen(path, "wb");

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT [FORM]: exports a file, draws and evaluates COUNT times on a device, and compares
+# run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT [FORM]: exports a file, samples and evaluates COUNT times on a device, and compares
 # with the reader. DEVICE: c, opencl, cuda, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only
 # compile. FORM: environment, on a lat-long grid; environment_square, on the octahedral one; local and local_square, the same
 # of the fast shape (local_fast, local_fast_square); brdf and brdf_anisotropic. PROBE, BRDF, BUDGET and FLOOR in the environment
@@ -47,7 +47,7 @@ export_sky() { "$acdf" export "$work/sky.acdf" --force --target "$@"; }
 
 defines=${brdf:+-DBRDF}
 
-# Steps of 2^-24 by which the density of a draw may differ from that of its direction. Where floats are IEEE's, and sums of
+# Steps of 2^-24 by which the density of a sample may differ from that of its direction. Where floats are IEEE's, and sums of
 # products are not fused: none.
 check() { "$compare" check "$work/sky.acdf" "$count" "$work" "$1"; }
 
@@ -60,7 +60,7 @@ on_c() {
     check 0
     export_sky c --tables "$work/tables.bin" -o "$work/exported.h"
     "${CC:-cc}" -std=c99 -O2 -Werror -ffp-contract=off $defines -DTABLES_FILE -I"$work" "$here/device.c" -o "$work/device" -lm
-    rm "$work/draws.bin" "$work/densities.bin"
+    rm "$work/samples.bin" "$work/densities.bin"
     "$work/device" "$work"
     check 0
 }

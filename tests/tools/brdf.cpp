@@ -145,15 +145,15 @@ TEST(BrdfCommand, plotsAView) {
 TEST(BrdfCommand, samplesAndDensitiesAreThoseOfTheReader) {
     acdf::File file;
     ASSERT_TRUE(acdf::File::open(small_file().c_str(), file).ok());
-    const Result drawn = run_acdf({"sample", small_file(), "-n", "40", "--view", "50,20", "--sequence", "sobol"});
-    ASSERT_EQ(drawn.code, 0) << drawn.err;
-    const Result densities = run_acdf({"pdf", small_file(), "--view", "50,20"}, drawn.out);
+    const Result sampled = run_acdf({"sample", small_file(), "-n", "40", "--view", "50,20", "--sequence", "sobol"});
+    ASSERT_EQ(sampled.code, 0) << sampled.err;
+    const Result densities = run_acdf({"pdf", small_file(), "--view", "50,20"}, sampled.out);
     ASSERT_EQ(densities.code, 0) << densities.err;
     const double degree = std::acos(-1.0) / 180.0;
     const float wo[3] = {static_cast<float>(std::sin(50 * degree) * std::cos(20 * degree)),
                          static_cast<float>(std::sin(50 * degree) * std::sin(20 * degree)),
                          static_cast<float>(std::cos(50 * degree))};
-    std::istringstream samples(drawn.out), pdfs(densities.out);
+    std::istringstream samples(sampled.out), pdfs(densities.out);
     std::string line;
     std::getline(samples, line);
     EXPECT_EQ(line, "u0,u1,x,y,z,pdf");

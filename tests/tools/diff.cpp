@@ -1,4 +1,4 @@
-// acdf diff: bytes, and what is drawn.
+// acdf diff: bytes, and what is sampled.
 #include "tests/tools/run.h"
 
 #include "tests/inputs/float_map.h"

@@ -78,8 +78,8 @@ TEST_F(Export, WithoutTablesCAndJsonHoldThem) {
 TEST_F(Export, OneTextServesAllKinds) {
     const std::string golden = std::string(ACDF_TEST_DIR) + "/golden/v1.0/";
     const std::string functions = run_acdf({"export", file, "--target", "glsl"}).out;
-    for (const char* name :
-         {"local.acdf", "local_grid.acdf", "octahedral.acdf", "places.acdf", "brdf_mirrored.acdf", "zlib.acdf"}) {
+    for (const char* name : {"local.acdf", "local_grid.acdf", "octahedral.acdf", "visibility.acdf",
+                             "brdf_mirrored.acdf", "zlib.acdf"}) {
         const Result result = run_acdf({"export", golden + name, "--target", "glsl", "--tables", tables, "-f"});
         EXPECT_EQ(result.out, functions) << name;
         ASSERT_EQ(result.code, 0) << result.err;

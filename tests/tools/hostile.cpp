@@ -179,7 +179,7 @@ TEST_F(Hostile, CommandsThatFailLeaveNoFolder) {
         "image": {"width": 2, "height": 2}, "light": {"built_in": "sky"},
         "objects": [{"sphere": {"centre": [0, 0, 0], "radius": 1}, "brdf": "lambert"}],
         "samples": 1, "samplers": ["portals"]})";
-    expect_failure({"render", "--scene", scene, "-o", out, "-q"}, 1, "the scene tells no portals");
+    expect_failure({"render", "--scene", scene, "-o", out, "-q"}, 1, "the scene has no portals");
     expect_failure({"sweep", probe, "-o", out, "--kind", "brdf", "-q"}, 1, "it is no BRDF file");
     EXPECT_EQ(folder.entries(), 2u); // the probe and the scene
     ASSERT_EQ(mkdir((folder / "a").c_str(), 0700), 0);
@@ -228,12 +228,12 @@ TEST_F(Hostile, ListsAreToldHowTheyAreWritten) {
     for (const char* normal : {"0 0 1", "0,1", "1"})
         expect_failure({"plot", file, "-o", folder / "n.png", "--normal", normal}, 2,
                        "--normal: needs 3 numbers with commas between them; see");
-    expect_failure({"plot", file, "-o", folder / "n.png", "--place", "1,2"}, 2, "--place: needs 3 numbers");
+    expect_failure({"plot", file, "-o", folder / "n.png", "--position", "1,2"}, 2, "--position: needs 3 numbers");
 }
 
 TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
     ASSERT_EQ(run_acdf({"env", probe, "-o", file, "-q"}).code, 0);
-    expect_failure({"measure", file, "--against", probe, "--rivals"}, 2, "--rivals");
+    expect_failure({"measure", file, "--against", probe, "--baselines"}, 2, "--baselines");
     expect_failure({"measure", file, "--against", probe, "--normals", "7"}, 2, "--normals");
     expect_failure({"measure", file, "--against", probe, "--views", "7"}, 2, "--views");
     const std::string brdf = folder / "b.acdf";
@@ -241,7 +241,7 @@ TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
     for (const std::string option : {"--projection=latlong", "--bad-pixels=clamp", "--on-black=uniform"})
         expect_failure({"measure", brdf, "--against", "ggx:alpha=0.5", option}, 2, option.substr(0, 5));
     const std::string png = folder / "p.png";
-    expect_failure({"plot", brdf, "-o", png, "--place", "0,0,0"}, 2, "--place");
+    expect_failure({"plot", brdf, "-o", png, "--position", "0,0,0"}, 2, "--position");
     expect_failure({"plot", brdf, "-o", png, "--normal", "0,0,1"}, 1, "--normal");
     expect_failure({"plot", probe, "-o", png, "--normal", "0,0,1"}, 1, "--normal");
     expect_failure({"plot", probe, "-o", png, "--view", "30"}, 2, "--view");
@@ -259,7 +259,7 @@ TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
     }
 }
 
-// A company of all normals is seldom that of a picture.
+// An MIS partner of all normals is seldom that of a picture.
 TEST_F(Hostile, FilesForAllNormalsAdviseASceneOrTheMean) {
     const std::string normals = folder / "normals.txt";
     write_text(normals, "0 0 1\n0 0 -1\n0 1 0\n0 -1 0\n1 0 0\n-1 0 0\n");
@@ -268,11 +268,11 @@ TEST_F(Hostile, FilesForAllNormalsAdviseASceneOrTheMean) {
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Result result = run_acdf(arguments);
         EXPECT_EQ(result.code, 0) << result.err;
-        return result.err.find("--with mean") != std::string::npos;
+        return result.err.find("--mis mean") != std::string::npos;
     };
-    EXPECT_TRUE(advised({"--with", "cosine"}));
-    EXPECT_FALSE(advised({"--with", "mean"}));
-    EXPECT_FALSE(advised({"--with", "cosine", "--scene", normals}));
+    EXPECT_TRUE(advised({"--mis", "cosine"}));
+    EXPECT_FALSE(advised({"--mis", "mean"}));
+    EXPECT_FALSE(advised({"--mis", "cosine", "--scene", normals}));
     EXPECT_FALSE(advised({}));
 }
 

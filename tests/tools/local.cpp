@@ -56,29 +56,29 @@ protected:
     }
 };
 
-TEST_F(LocalCommand, OfACompanyTellsIt) {
-    const json report = made({"--budget", "48KiB", "--with", "cosine", "--shares", "2:1"});
+TEST_F(LocalCommand, OfAPartnerTellsIt) {
+    const json report = made({"--budget", "48KiB", "--mis", "cosine", "--shares", "2:1"});
     EXPECT_TRUE(report.at("combined").get<bool>());
     EXPECT_LT(report.at("relative_variance").get<double>(), report.at("relative_variance_full_cdf").get<double>());
     const json info = json::parse(run_acdf({"info", "--json", output}).out);
-    EXPECT_EQ(info.at("company").at("with"), "cosine");
-    EXPECT_NEAR(info.at("company").at("share").get<double>(), 2.0 / 3.0, 1e-6);
-    EXPECT_GT(info.at("company").at("recommended_share").get<double>(), 0.0);
-    EXPECT_EQ(info.at("options"), "--with cosine --shares 2:1 --budget 49152");
+    EXPECT_EQ(info.at("partner").at("kind"), "cosine");
+    EXPECT_NEAR(info.at("partner").at("share").get<double>(), 2.0 / 3.0, 1e-6);
+    EXPECT_GT(info.at("partner").at("recommended_light_share").get<double>(), 0.0);
+    EXPECT_EQ(info.at("options"), "--mis cosine --shares 2:1 --budget 49152");
     const json measured = json::parse(run_acdf({"measure", output, "--against", probe, "--json"}).out);
     EXPECT_TRUE(measured.at("combined").get<bool>());
     EXPECT_EQ(measured.at("support_violations"), 0);
     EXPECT_EQ(run_acdf({"validate", output}).code, 0);
-    const Result drawn = run_acdf({"sample", output, "-n", "1", "--normal", "0,0,1"});
-    EXPECT_EQ(drawn.code, 0);
-    EXPECT_NE(drawn.err.find("not to be used alone"), std::string::npos) << drawn.err;
+    const Result sampled = run_acdf({"sample", output, "-n", "1", "--normal", "0,0,1"});
+    EXPECT_EQ(sampled.code, 0);
+    EXPECT_NE(sampled.err.find("not to be used alone"), std::string::npos) << sampled.err;
     EXPECT_EQ(run_acdf({"sample", output, "-n", "1", "--normal", "0,0,1", "--quiet"}).err, "");
     for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--shares", "2:1"},
                                                   {"--heuristic", "power"},
-                                                  {"--with", "mean"},
-                                                  {"--with", "cosine", "--shares", "0:1"},
-                                                  {"--with", "cosine", "--cosine-share", "0.2"},
-                                                  {"--with", "cosine", "--no-sharing"}}) {
+                                                  {"--mis", "mean"},
+                                                  {"--mis", "cosine", "--shares", "0:1"},
+                                                  {"--mis", "cosine", "--cosine-share", "0.2"},
+                                                  {"--mis", "cosine", "--no-sharing"}}) {
         std::vector<std::string> options{"local", probe, "-o", output, "--force"};
         options.insert(options.end(), wrong.begin(), wrong.end());
         EXPECT_EQ(run_acdf(options).code, 2) << wrong.front();
@@ -90,16 +90,16 @@ TEST_F(LocalCommand, TellsWhatMeasureTells) {
     EXPECT_LE(report["bytes"], 40000);
     EXPECT_EQ(report["bytes"], std::filesystem::file_size(output));
     EXPECT_EQ(report["support_violations"], 0);
-    const Result measured = run_acdf({"measure", output, "--against", probe, "--json", "--rivals"});
+    const Result measured = run_acdf({"measure", output, "--against", probe, "--json", "--baselines"});
     ASSERT_EQ(measured.code, 0) << measured.err;
     const json accuracy = json::parse(measured.out);
     for (const char* key :
          {"file", "source", "bytes", "bins", "normals", "relative_variance", "relative_variance_full_cdf", "gain",
           "max_weight", "share_above_horizon", "least_share_above_horizon", "support_violations"})
         EXPECT_EQ(report.at(key), accuracy.at(key)) << key;
-    for (const char* rival : {"full_cdf", "resampling_32", "tiling_512", "cosine"})
-        EXPECT_GT(accuracy["rivals"][rival]["relative_variance"], accuracy["relative_variance"]) << rival;
-    EXPECT_NEAR(accuracy["rivals"]["full_cdf"]["relative_variance"].get<double>(),
+    for (const char* baseline : {"full_cdf", "resampling_32", "tiling_512", "cosine"})
+        EXPECT_GT(accuracy["baselines"][baseline]["relative_variance"], accuracy["relative_variance"]) << baseline;
+    EXPECT_NEAR(accuracy["baselines"]["full_cdf"]["relative_variance"].get<double>(),
                 accuracy["relative_variance_full_cdf"].get<double>(), 1e-6);
 }
 
@@ -190,9 +190,9 @@ TEST_F(LocalCommand, WrongUsageIsOneLine) {
     expect_usage({"--no-sharing", "--target-variance", "0.1"}, "--target-variance");
     expect_usage({"--cosine-share", "1"}, "--cosine-share");
     expect_usage({"--shape", "round"}, "--shape");
-    for (const char* other : {"--no-sharing", "--places"}) expect_usage({"--shape", "fast", other}, other);
+    for (const char* other : {"--no-sharing", "--visibility"}) expect_usage({"--shape", "fast", other}, other);
     expect_usage({"--shape", "fast", "--max-weight", "20"}, "--max-weight");
-    expect_usage({"--shape", "fast", "--with", "cosine"}, "--with");
+    expect_usage({"--shape", "fast", "--mis", "cosine"}, "--mis");
     expect_usage({"--shape", "fast", "--normals", "8x4"}, "--no-sharing");
 }
 
@@ -228,7 +228,7 @@ TEST_F(LocalCommand, ChoosesTheShape) {
     const std::string by_default = folder / "default.acdf"; // as the last one
     EXPECT_EQ(run_acdf({"local", lamp, "-o", by_default, "--budget", "64KiB"}).code, 0);
     EXPECT_EQ(read_text(by_default), read_text(output));
-    EXPECT_EQ(made({"--shape", "auto", "--budget", "48KiB", "--with", "cosine"}).at("shape"), "small");
+    EXPECT_EQ(made({"--shape", "auto", "--budget", "48KiB", "--mis", "cosine"}).at("shape"), "small");
     EXPECT_EQ(made({"--shape", "auto", "--budget", "24KiB", "--max-weight", "50"}).at("shape"), "small");
 }
 
@@ -236,7 +236,7 @@ TEST_F(LocalCommand, TheLeastSizeThatIsToldCanBeHad) {
     ACDF_NOT_SANITIZED();
     const std::string told = "the least that can be had is about ";
     for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
-             {}, {"--normals", "20"}, {"--shape", "fast"}, {"--with", "cosine"}, {"--compress", "zlib"}}) {
+             {}, {"--normals", "20"}, {"--shape", "fast"}, {"--mis", "cosine"}, {"--compress", "zlib"}}) {
         std::vector<std::string> words{"local", probe, "-o", output, "-q", "--force"};
         words.insert(words.end(), options.begin(), options.end());
         words.insert(words.end(), {"--budget", "600"});

@@ -126,9 +126,9 @@ TEST_F(LocalCommands, PdfOfSamplesIsTheirDensity) {
     const Result csv = run_acdf({"pdf", shared, "--normal", "0.1,0.2,0.3", "--csv"}, samples.out);
     ASSERT_EQ(csv.code, 0) << csv.err;
     EXPECT_EQ(csv.out.rfind("x,y,z,pdf\n", 0), 0u);
-    const auto drawn = rows_of(samples.out), told = rows_of(csv.out);
-    ASSERT_EQ(drawn.size(), told.size());
-    for (std::size_t i = 0; i < drawn.size(); ++i) EXPECT_EQ(drawn[i][5], told[i][3]);
+    const auto sampled = rows_of(samples.out), told = rows_of(csv.out);
+    ASSERT_EQ(sampled.size(), told.size());
+    for (std::size_t i = 0; i < sampled.size(); ++i) EXPECT_EQ(sampled[i][5], told[i][3]);
 }
 
 TEST_F(LocalCommands, PdfReadsANormalFromEachLine) {
@@ -167,7 +167,7 @@ TEST_F(LocalCommands, WhatDoesNotFitIsRefused) {
 
 // ---- plots ---------------------------------------------------------------------------------------------
 
-TEST_F(LocalCommands, PlotHoldsTheReadersDensities) {
+TEST_F(LocalCommands, PlotHoldsTheReadersPdfs) {
     const std::string exr = folder / "up.exr";
     for (const std::string& path : {shared, grid}) {
         const Result result = run_acdf({"plot", path, "-f", "-o", exr, "--width", "60", "--normal", "-1,2,0.5"});
@@ -236,10 +236,10 @@ TEST(PlotLocal, HorizonIsWhereTheCosineVanishes) {
                 float d[3];
                 if (!tools::pixel_direction(map, x + 0.5, y + 0.5, d)) continue;
                 const double cosine = acdf_test::dot(n.data(), d) / length(n.data());
-                const float drawn = opacity[std::size_t(y * map.width + x)];
-                EXPECT_TRUE(drawn == 0.0f || std::abs(cosine) < 0.25) << x << ' ' << y;
-                EXPECT_TRUE(drawn > 0.5f || std::abs(cosine) >= 0.005) << x << ' ' << y;
-                on += drawn > 0.5f;
+                const float sampled = opacity[std::size_t(y * map.width + x)];
+                EXPECT_TRUE(sampled == 0.0f || std::abs(cosine) < 0.25) << x << ' ' << y;
+                EXPECT_TRUE(sampled > 0.5f || std::abs(cosine) >= 0.005) << x << ' ' << y;
+                on += sampled > 0.5f;
             }
         EXPECT_GT(on, 100);
         EXPECT_LT(on, 600);

@@ -32,17 +32,17 @@ protected:
         return result.code == 0 ? json::parse(run_acdf({"info", "--json", output}).out) : json();
     }
     static std::string partner(const json& info) {
-        const json company = info.value("company", json());
-        return company.is_null()
+        const json partner = info.value("partner", json());
+        return partner.is_null()
                    ? "none"
-                   : company.at("with").get<std::string>() + " " + company.at("heuristic").get<std::string>();
+                   : partner.at("kind").get<std::string>() + " " + partner.at("heuristic").get<std::string>();
     }
     std::string messages;
 };
 
 TEST_F(Make, PresetsSetThePartnerAndTheHeuristic) {
     EXPECT_EQ(partner(made({"env", "--for", "pbrt-v4"})), "mean power");
-    EXPECT_NE(messages.find("--with mean --heuristic power"), std::string::npos) << messages;
+    EXPECT_NE(messages.find("--mis mean --heuristic power"), std::string::npos) << messages;
     EXPECT_NE(messages.find("never use it alone"), std::string::npos) << messages;
     EXPECT_EQ(partner(made({"local", "--for", "mitsuba3"})), "cosine power");
     write_text(folder / "up.txt", "0 0 1\n");
@@ -52,9 +52,9 @@ TEST_F(Make, PresetsSetThePartnerAndTheHeuristic) {
 }
 
 TEST_F(Make, OptionsThatAreGivenWin) {
-    EXPECT_EQ(partner(made({"env", "--for", "pbrt-v4", "--with", "none"})), "none");
+    EXPECT_EQ(partner(made({"env", "--for", "pbrt-v4", "--mis", "none"})), "none");
     EXPECT_EQ(partner(made({"env", "--for", "pbrt-v4", "--heuristic", "balance"})), "mean balance");
-    EXPECT_EQ(partner(made({"env", "--for", "pbrt-v4", "--with", "cosine"})), "cosine power");
+    EXPECT_EQ(partner(made({"env", "--for", "pbrt-v4", "--mis", "cosine"})), "cosine power");
     const std::vector<std::vector<std::string>> alone = {
         {"env", "--max-weight", "9"},   {"env", "--target-variance", "2"},  {"env", "--fit", "cdf"},
         {"local", "--max-weight", "9"}, {"local", "--cosine-share", "0.2"}, {"local", "--no-sharing"},

@@ -124,21 +124,21 @@ TEST_F(OctahedralCommand, LocalFilesLieOnItToo) {
     EXPECT_EQ(report["domain"], "octahedral");
     EXPECT_EQ(report["support_violations"], 0);
     EXPECT_EQ(parameterization(), std::uint32_t{ACDF_PARAM_OCTAHEDRAL});
-    const json told = measured(square, {"--projection", "octahedral", "--rivals"});
+    const json told = measured(square, {"--projection", "octahedral", "--baselines"});
     EXPECT_EQ(told["relative_variance"], report["relative_variance"]);
     const Result plot = run_acdf({"plot", output, "-o", folder / "out.png", "--width", "128", "--normal", "0,0,1"});
     EXPECT_EQ(plot.code, 0) << plot.err;
 }
 
-// A projection that was told when a file was made is known, of rivals too.
-TEST_F(OctahedralCommand, LocalRivalsOfOtherMapsNeedNoProjection) {
+// A projection that was told when a file was made is known, of baselines too.
+TEST_F(OctahedralCommand, LocalBaselinesOfOtherMapsNeedNoProjection) {
     const json report = made(disc, {"--projection", "angular", "--budget", "40kB"}, "local");
-    const json told = measured(disc, {"--rivals"});
+    const json told = measured(disc, {"--baselines"});
     EXPECT_EQ(told["relative_variance"], report["relative_variance"]);
-    EXPECT_GT(told["rivals"]["full_cdf"]["relative_variance"], 1.0);
+    EXPECT_GT(told["baselines"]["full_cdf"]["relative_variance"], 1.0);
 }
 
-// Files and rivals are compared on the map's own texels.
+// Files and baselines are compared on the map's own texels.
 TEST_F(OctahedralCommand, SweepsDrawItsTexels) {
     for (const char* kind : {"env", "local"}) {
         if (acdf_test::kSanitized && kind == std::string("local")) break; // test_sweep sweeps such files
@@ -158,9 +158,9 @@ TEST_F(OctahedralCommand, SweepsDrawItsTexels) {
             EXPECT_LT(full["relative_variance"], 1e-9); // the density is the light itself
             continue;
         }
-        const json told = measured(square, {"--projection", "octahedral", "--rivals"});
+        const json told = measured(square, {"--projection", "octahedral", "--baselines"});
         EXPECT_GT(full["relative_variance"], sweep["rows"][0]["relative_variance"]);
-        EXPECT_NEAR(full["relative_variance"], told["rivals"]["full_cdf"]["relative_variance"],
+        EXPECT_NEAR(full["relative_variance"], told["baselines"]["full_cdf"]["relative_variance"],
                     0.1 * full["relative_variance"].get<double>()); // of other normals
     }
 }
@@ -227,7 +227,7 @@ TEST_F(OctahedralCommand, PresetsCoverWhatRowsThatRepeatShowAtThePoles) {
     const float zenith[3] = {0.05f, 0.03f, 0.9983f}, up[3] = {0.0f, 0.0f, 1.0f};
     for (const char* renderer : {"cycles", "pbrt-v3", "luxcore", "mitsuba3", "three"}) {
         const bool repeats = builder::find_renderer(renderer)->target.wrap == builder::Wrap::repeat;
-        made(source, {"--for", renderer, "--with", "none"});
+        made(source, {"--for", renderer, "--mis", "none"});
         File file;
         ASSERT_TRUE(File::open(output.c_str(), file).ok());
         EXPECT_EQ(file.environment().pdf(zenith) > 0.0f, repeats) << renderer;
@@ -235,16 +235,16 @@ TEST_F(OctahedralCommand, PresetsCoverWhatRowsThatRepeatShowAtThePoles) {
         EXPECT_EQ(std::string(options.data, options.size).find("--wrap repeat") != std::string::npos, repeats);
         EXPECT_EQ(measured(source)["support_violations"], 0);
         if (!repeats) continue;
-        made(source, {"--for", renderer, "--with", "none"}, "local");
+        made(source, {"--for", renderer, "--mis", "none"}, "local");
         ASSERT_TRUE(File::open(output.c_str(), file).ok());
         EXPECT_GT(file.local().pdf(up, zenith), 0.0f) << renderer;
     }
-    made(source, {"--for", "cycles", "--with", "none", "--wrap", "clamp"});
+    made(source, {"--for", "cycles", "--mis", "none", "--wrap", "clamp"});
     File file;
     ASSERT_TRUE(File::open(output.c_str(), file).ok());
     EXPECT_EQ(file.environment().pdf(zenith), 0.0f) << "what is given by itself wins";
     // On another grid than the map's own.
-    const json square_file = made(source, {"--for", "cycles", "--with", "none", "--domain", "octahedral"});
+    const json square_file = made(source, {"--for", "cycles", "--mis", "none", "--domain", "octahedral"});
     EXPECT_EQ(square_file["support_violations"], 0);
     ASSERT_TRUE(File::open(output.c_str(), file).ok());
     EXPECT_GT(file.environment().pdf(zenith), 0.0f);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/inputs/folder.h"
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/inputs/sanitized.h"
 
 #include "compress/store/store.h"

@@ -1,5 +1,5 @@
 // `acdf scanline` as a user runs it.
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/tools/plot/files.h"
 #include "tests/tools/run.h"
 

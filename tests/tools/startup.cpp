@@ -1,5 +1,5 @@
 // What the program loads before it has anything to do: no library for images, until there is one.
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/tools/plot/files.h"
 #include "tests/tools/run.h"

@@ -1,5 +1,5 @@
 // acdf table, and the other subcommands on what it makes.
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/table_files.h"
 

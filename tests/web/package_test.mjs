@@ -13,20 +13,20 @@ const goldenBytes = name => readFileSync(`${process.env.GOLDEN}/${name}`);
 // Columns u0 u1 x y z pdf of `acdf sample`, whose digits give back each float.
 function samplesOf(csv) {
     const rows = readFileSync(csv, "utf8").trim().split("\n").slice(1).map(line => line.split(",").map(Number));
-    return {u: rows.flatMap(row => row.slice(0, 2)), drawn: Float32Array.from(rows.flatMap(row => row.slice(2)))};
+    return {u: rows.flatMap(row => row.slice(0, 2)), sampled: Float32Array.from(rows.flatMap(row => row.slice(2)))};
 }
 
-function directionsOf(drawn) {
-    return drawn.filter((_, i) => i % 4 !== 3);
+function directionsOf(sampled) {
+    return sampled.filter((_, i) => i % 4 !== 3);
 }
-const densitiesOf = drawn => drawn.filter((_, i) => i % 4 === 3);
+const densitiesOf = sampled => sampled.filter((_, i) => i % 4 === 3);
 
 for (const [name, options] of [["sky", {}], ["local", {normal: [0, 0.6, 0.8]}]])
     test(`draws and densities of ${name}.acdf are the program's to the bit`, () => {
-        const file = reader.open(readFileSync(`${name}.acdf`)), {u, drawn} = samplesOf(`${name}.csv`);
-        assert.equal(drawn.length, 80000);
-        assert.deepEqual(file.sample(u, options), drawn);
-        assert.deepEqual(file.pdf(directionsOf(drawn), options), densitiesOf(drawn));
+        const file = reader.open(readFileSync(`${name}.acdf`)), {u, sampled} = samplesOf(`${name}.csv`);
+        assert.equal(sampled.length, 80000);
+        assert.deepEqual(file.sample(u, options), sampled);
+        assert.deepEqual(file.pdf(directionsOf(sampled), options), densitiesOf(sampled));
         file.close();
         assert.throws(() => file.sample(u, options), AcdfError);
     });
@@ -86,8 +86,8 @@ test("every golden file", () => {
     assert.ok(golden.length >= 10);
     for (const name of golden) {
         const file = reader.open(goldenBytes(name));
-        const drawn = file.sample([0.5, 0.5, 0, 1, NaN, 2]), density = file.pdf([NaN, 0, 1, 0, 0, 2, 0, 0, 1]);
-        assert.equal(drawn.length, 12);
+        const sampled = file.sample([0.5, 0.5, 0, 1, NaN, 2]), density = file.pdf([NaN, 0, 1, 0, 0, 2, 0, 0, 1]);
+        assert.equal(sampled.length, 12);
         assert.deepEqual([density[0], density[1]], [0, 0], name);
         file.close();
     }
@@ -132,5 +132,5 @@ test("calls that cannot be meant", () => {
     assert.throws(() => file.pdf([0, 0]), RangeError);
     assert.throws(() => file.map(0, 4), RangeError);
     assert.equal(file.sample([]).length, 0);
-    assert.equal(file.recommendedShare(), 1);
+    assert.equal(file.recommendedLightShare(), 1);
 });

@@ -14,7 +14,7 @@ test -e "$build/web/package/acdf.wasm" || skip "the package was not built: no C+
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$here/../../docs/viewer/build.sh" "$build"
-cp "$build/web/viewer.html" "$here/viewer_test.html" "$here"/../golden/v1.0/{brdf,places}.acdf "$work"
+cp "$build/web/viewer.html" "$here/viewer_test.html" "$here"/../golden/v1.0/{brdf,visibility}.acdf "$work"
 cd "$work"
 "$make_sky" sky.pfm
 "$acdf" env sky.pfm --budget 8KiB --compress zlib -o sky.acdf --quiet

@@ -56,14 +56,14 @@ std::string thumbnail(const std::string& path, const std::string& name) {
     DensityImage image;
     std::string shows = "density of " + name;
     if (file.kind() == ACDF_KIND_BRDF) {
-        image = draw_density(hemisphere_map(kDiscWidth), density_of(PlottedView{file.brdf(), {45.0, 0.0}}));
+        image = draw_density(hemisphere_map(kDiscWidth), pdf_of(PlottedView{file.brdf(), {45.0, 0.0}}));
         shows += " for a view at 45 degrees";
     } else if (file.kind() == ACDF_KIND_LOCAL) {
         image = draw_density(plot_map(build::Layout::latlong, kMapWidth),
-                             density_of(PlottedNormal{file.local(), {0.0f, 0.0f, 1.0f}}));
+                             pdf_of(PlottedNormal{file.local(), {0.0f, 0.0f, 1.0f}}));
         shows += " for the normal +z";
     } else if (file.kind() == ACDF_KIND_ENVIRONMENT) {
-        image = draw_density(plot_map(build::Layout::latlong, kMapWidth), density_of(file.environment()));
+        image = draw_density(plot_map(build::Layout::latlong, kMapWidth), pdf_of(file.environment()));
     } else {
         return "";
     }

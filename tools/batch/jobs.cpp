@@ -178,7 +178,7 @@ std::string add_bytes(const std::string& path, std::uint64_t& bytes) {
 /// Adds the size of the source, or tells what is wrong with it.
 std::string check_source(BatchJob& job) {
     if (find_non_utf8(job.source) != std::string::npos)
-        return "the name of the source is not UTF-8, which files tell it in; rename it";
+        return "the name of the source is not UTF-8, which files store it in; rename it";
     if (job.kind == find_kind("brdf") && input::is_model(job.source)) return "";
     job.bytes = 0;
     for (const std::string& file : input::probe_files(job.source))
@@ -238,14 +238,14 @@ void check_duplicates(const std::string& folder, BatchJobs& jobs) {
     }
 }
 
-/// More for a file that tells places apart, whatever the source: on one core, of 4 MiB.
-constexpr double places_seconds = 100.0;
+/// More for a file that stores visibility cells, whatever the source: on one core, of 4 MiB.
+constexpr double visibility_seconds = 100.0;
 
 } // namespace
 
 double BatchJob::seconds() const {
-    const bool places = std::find(options.begin(), options.end(), "--places") != options.end();
-    return kind->seconds + kind->seconds_each * double(bytes) + (places ? places_seconds : 0.0);
+    const bool visibility = std::find(options.begin(), options.end(), "--visibility") != options.end();
+    return kind->seconds + kind->seconds_each * double(bytes) + (visibility ? visibility_seconds : 0.0);
 }
 
 BatchSetting parse_setting(const std::string& text) {

@@ -103,10 +103,10 @@ bool is_outside(const input::MeshSurface& surface, const Window& window) {
 
 } // namespace
 
-void note_portals(const builder::Places& places, const input::MeshSurface& surface, const Note& note) {
+void note_portals(const builder::Visibility& visibility, const input::MeshSurface& surface, const Note& note) {
     if (surface.triangles().corners.empty()) return;
-    for (std::size_t i = 0; i < places.portals.size(); ++i) {
-        const Window window(places.portals[i], places.transform);
+    for (std::size_t i = 0; i < visibility.portals.size(); ++i) {
+        const Window window(visibility.portals[i], visibility.transform);
         if (!(std::abs(window.outside[0]) <= 1.0)) continue; // no rectangle: refused when it is built
         const std::string name = "portal " + std::to_string(i + 1);
         if (is_outside(surface, window)) {

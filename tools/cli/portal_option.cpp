@@ -71,14 +71,14 @@ void PortalOption::add(CLI::App& command, const char* group) {
                     spelled_.push_back(spelled(c));
                 }
             },
-            "With --places: a window or door that light comes through, three corners of it in the mesh's own "
-            "coordinates, one after the other, counter-clockwise as seen from outside. Samples are drawn through "
+            "With --visibility: a window or door that light comes through, three corners of it in the mesh's own "
+            "coordinates, one after the other, counter-clockwise as seen from outside. Samples are taken through "
             "it. "
             "May be given up to 8 times")
         ->type_name("\"X,Y,Z X,Y,Z X,Y,Z\"")
         ->allow_extra_args(false)
         ->group(group);
-    command.add_option("--portals", path, "With --places: the portals of a scene of acdf render (.json)")
+    command.add_option("--portals", path, "With --visibility: the portals of a scene of acdf render (.json)")
         ->type_name("FILE")
         ->group(group);
 }
@@ -89,14 +89,14 @@ std::string PortalOption::text() const {
     return path.empty() ? out : out + " --portals " + input::file_sha256(path);
 }
 
-void PortalOption::tell(builder::Places& places) const {
-    places.portals = corners_;
+void PortalOption::tell(builder::Visibility& visibility) const {
+    visibility.portals = corners_;
     if (path.empty()) return;
     const std::vector<std::uint8_t> bytes = read_bytes(path, kMostSceneBytes);
     try {
         const std::vector<measure::Portal> portals = parse_scene({bytes.begin(), bytes.end()}).geometry.portals;
-        if (portals.empty()) throw SceneError("the scene tells no portals");
-        for (const measure::Portal& portal : portals) places.portals.push_back(told_portal(places, portal));
+        if (portals.empty()) throw SceneError("the scene has no portals");
+        for (const measure::Portal& portal : portals) visibility.portals.push_back(portal_of(visibility, portal));
     } catch (const SceneError& error) {
         throw input::Error(path + ": " + error.what());
     }

@@ -19,8 +19,8 @@ struct PortalOption {
     void add(CLI::App& command, const char* group);
     /// The options in one spelling, with the SHA-256 of the file. Throws input::Error.
     std::string text() const;
-    /// Adds the portals to places, whose transform is known. Throws input::Error.
-    void tell(builder::Places& places) const;
+    /// Adds the portals to visibility, whose transform is known. Throws input::Error.
+    void tell(builder::Visibility& visibility) const;
 
 private:
     std::vector<builder::Portal> corners_;

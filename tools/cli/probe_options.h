@@ -66,7 +66,7 @@ inline void add_repairs(CLI::App& command, input::ProbeOptions& options) {
     add_choice(command, "--bad-pixels", options.bad_pixels, policies,
                "What becomes of NaN, infinite and negative values: zero; clamp (+infinity becomes what half "
                "floats end at, 65504, or in other files the largest finite value of its channel, the others 0); "
-               "error (refuse the probe). They are counted and told")
+               "error (refuse the probe). They are counted and reported")
         ->option_text("NAME [zero]")
         ->group("Input");
     constexpr Named<bool> when_black[] = {{"error", false}, {"uniform", true}};

@@ -194,7 +194,7 @@ ProbeTarget source_target(const std::string& path, const File& file, const std::
                              file.axis(0).resolution, file.axis(1).resolution};
     ProbeTarget out =
         load(source, options, builder::TargetRows(stored_options(file), {}, grid), notes_of(source, quiet));
-    if (!quiet) tell_of_another(path, file, source, out.probe.source_sha256);
+    if (!quiet) note_another(path, file, source, out.probe.source_sha256);
     return out;
 }
 

@@ -1,6 +1,6 @@
 #include "tools/cli/renderer.h"
 
-#include "build/text/company.h"
+#include "build/text/partner.h"
 
 #include <CLI/CLI.hpp>
 
@@ -28,7 +28,7 @@ void add_renderer(CLI::App& command, const builder::Renderer*& chosen) {
             },
             "The renderer that will use the file: sets --domain, --filter, --wrap and --channel as it looks its "
             "map "
-            "up, --with and --heuristic as its path integrator combines samples, but for those that are given by "
+            "up, --mis and --heuristic as its path integrator combines samples, but for those that are given by "
             "themselves, and says which axes to swap: " +
                 renderer_names())
         ->option_text("NAME")
@@ -46,19 +46,19 @@ void use_renderer(const CLI::App& command, const builder::Renderer* chosen, inpu
     if (!given("--channel")) target.channels = chosen->target.channels;
 }
 
-bool use_partner(const CLI::App& command, const builder::Company& suits, builder::Company& company) {
-    if (suits.kind == ACDF_COMPANY_NONE) return false;
-    if (command.get_option("--heuristic")->count() == 0) company.heuristic = suits.heuristic;
-    if (command.get_option("--with")->count() > 0) return false;
-    company.kind = suits.kind;
+bool use_partner(const CLI::App& command, const builder::Partner& suits, builder::Partner& partner) {
+    if (suits.kind == ACDF_PARTNER_NONE) return false;
+    if (command.get_option("--heuristic")->count() == 0) partner.heuristic = suits.heuristic;
+    if (command.get_option("--mis")->count() > 0) return false;
+    partner.kind = suits.kind;
     return true;
 }
 
-std::string partner_text(const builder::Renderer& renderer, const builder::Company& company) {
-    std::string options = build::company_text({company.kind, company.heuristic, company.light, company.other});
+std::string partner_text(const builder::Renderer& renderer, const builder::Partner& partner) {
+    std::string options = build::partner_text({partner.kind, partner.heuristic, partner.light, partner.other});
     options.pop_back();
     return std::string("made to be combined with BSDF samples, as ") + renderer.name + "'s path integrator does (" +
-           options + "): never use it alone; for an integrator that takes light samples alone add --with none";
+           options + "): never use it alone; for an integrator that takes light samples alone add --mis none";
 }
 
 std::string axes_text(const builder::Renderer& renderer, builder::Projection projection) {

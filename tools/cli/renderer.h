@@ -21,10 +21,10 @@ void use_renderer(const CLI::App& command, const builder::Renderer* chosen, inpu
                   builder::TargetOptions& target);
 
 /// Sets the MIS partner that suits, but for what the command line gave by itself. Returns whether one was set.
-bool use_partner(const CLI::App& command, const builder::Company& suits, builder::Company& company);
+bool use_partner(const CLI::App& command, const builder::Partner& suits, builder::Partner& partner);
 
 /// Why a file is for that partner, and what must hold: one line.
-std::string partner_text(const builder::Renderer& renderer, const builder::Company& company);
+std::string partner_text(const builder::Renderer& renderer, const builder::Partner& partner);
 
 /// What the caller must do with directions of a map of that projection: one line.
 std::string axes_text(const builder::Renderer& renderer, builder::Projection projection);

@@ -53,9 +53,9 @@ void SceneAxes::turn(input::Triangles& triangles) const {
         std::swap(triangles.corners[3 * i + 1], triangles.corners[3 * i + 2]);
 }
 
-void SceneAxes::tell(builder::Places& places) const {
+void SceneAxes::tell(builder::Visibility& visibility) const {
     for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t i = 0; i < 4; ++i) places.transform[k][i] = i == from[k] ? sign[k] : 0.0f;
+        for (std::size_t i = 0; i < 4; ++i) visibility.transform[k][i] = i == from[k] ? sign[k] : 0.0f;
 }
 
 } // namespace acdf::tools

@@ -31,7 +31,7 @@ struct SceneAxes {
     /// All corners; triangles stay wound as their normals are.
     void turn(input::Triangles& triangles) const;
     /// Positions are told in the scene's axes.
-    void tell(builder::Places& places) const;
+    void tell(builder::Visibility& visibility) const;
 };
 
 } // namespace acdf::tools

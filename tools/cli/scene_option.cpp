@@ -34,7 +34,7 @@ void SceneOption::add_axes(CLI::App& command, const char* group) {
         .add_option_function<std::string>(
             "--scene-axes", [this](const std::string& text) { axes_ = SceneAxes::of(text); },
             "Which of the scene's axes are our x, y and z, any of them negated: (-x,y,z) where it is in the "
-            "frame of pbrt. What --for tells of its (X, Y, Z) can be given as it stands")
+            "frame of pbrt. What --for says of its (X, Y, Z) can be given as it stands")
         ->option_text("AXES [(x,y,z)]")
         ->excludes("--scene-up")
         ->group(group);

@@ -10,8 +10,8 @@ bool made_from_another(const File& file, const std::string& sha256, const char* 
     return hash.size > 0 && std::string(hash.data, hash.size) != sha256;
 }
 
-void tell_of_another(const std::string& path, const File& file, const std::string& source,
-                     const std::string& sha256, const char* key) {
+void note_another(const std::string& path, const File& file, const std::string& source, const std::string& sha256,
+                  const char* key) {
     if (made_from_another(file, sha256, key))
         say(path + ": made from another file than " + source + " (its SHA-256 differs)");
 }
@@ -21,7 +21,7 @@ void require_support(const std::string& path, const File& file, const std::strin
     if (violations == 0 || !made_from_another(file, sha256)) return;
     throw Failure(path + ": does not stand for " + source +
                   ": it was made from another file, and its density is 0 in " + std::to_string(violations) +
-                  " places where that has light; measure against its own source");
+                  " points where that has light; measure against its own source");
 }
 
 } // namespace acdf::tools

@@ -61,7 +61,7 @@ void show_probe(const DemoArguments& options, const std::string& probe, const st
     with_force({"plot", stem + ".acdf", "-o", stem + ".png"});
     const std::string local = stem + ".local.acdf";
     with_force({"local", probe, "-o", local, "--budget", "256KiB"});
-    run_command({"measure", local, "--against", probe, "--rivals"});
+    run_command({"measure", local, "--against", probe, "--baselines"});
     with_force({"plot", local, "-o", stem + ".local.png", "--normal", "1,0,1"});
 }
 

@@ -1,4 +1,4 @@
-// acdf diff: whether two files are the same, byte by byte or in what is drawn from them.
+// acdf diff: whether two files are the same, byte by byte or in what is sampled from them.
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
@@ -56,7 +56,7 @@ std::map<std::string, std::pair<std::string, std::string>> told_differently(cons
 struct Found {
     bool same_bytes = false, same = false;
     std::size_t first_difference = 0;
-    std::string why_not; ///< compared by what is drawn
+    std::string why_not; ///< compared by what is sampled
     std::optional<Distance> distance;
 };
 
@@ -103,7 +103,7 @@ std::string per_cent(double share) {
 }
 
 std::string text_of(const Distance& d) {
-    char ratio[64] = "densities are 0 in one where the other draws";
+    char ratio[64] = "densities are 0 in one where the other samples";
     if (std::isfinite(d.largest_ratio))
         std::snprintf(ratio, sizeof ratio, "densities differ by up to a factor of %.4g", d.largest_ratio);
     return per_cent(d.worst) + " of the samples fall elsewhere" +
@@ -120,7 +120,7 @@ void print(const LoadedFile& a, const LoadedFile& b, const Found& found) {
     for (const auto& [key, values] : told_differently(a.file, b.file))
         put(key + ": " + (values.first.empty() ? "-" : on_one_line(values.first)) + " and " +
             (values.second.empty() ? "-" : on_one_line(values.second)) + "\n");
-    put("drawn: " + (found.distance ? text_of(*found.distance) : found.why_not) + "\n");
+    put("sampled: " + (found.distance ? text_of(*found.distance) : found.why_not) + "\n");
 }
 
 int run(const DiffArguments& options) {
@@ -136,8 +136,7 @@ int run(const DiffArguments& options) {
 
 void add_diff(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<DiffArguments>();
-    CLI::App& command =
-        *program.add_subcommand("diff", "Tell whether two files are the same, in bytes or in what is drawn");
+    CLI::App& command = *program.add_subcommand("diff", "Compare two files: their bytes, and what they sample");
     command.add_option("A", options->a, "An .acdf file (- is stdin)")->required()->type_name("")->group("Input");
     command.add_option("B", options->b, "Another one")->required()->type_name("")->group("Input");
     command
@@ -164,7 +163,7 @@ void add_diff(CLI::App& program, int& exit_code) {
     command.footer(help_footer("The share of samples that fall elsewhere is the total variation distance of both "
                                "densities, from 0 to 1. Local files "
                                "are compared for 64 normals, BRDFs for 32 views, tables for up to 64 bins; files "
-                               "that tell places apart by their "
+                               "that store visibility cells by their "
                                "bytes alone.",
                                "acdf diff before.acdf after.acdf\n"
                                "acdf diff sky.acdf sky.zlib.acdf --tolerance 0\n"

@@ -33,7 +33,7 @@ public:
             std::max(distance_.largest_ratio, low > 0.0 ? high / low : std::numeric_limits<double>::infinity());
     }
 
-    /// `empty`: of how many of the two nothing is drawn here.
+    /// `empty`: of how many of the two nothing is sampled here.
     void end(int empty) {
         const double share = empty == 1 ? 1.0 : count_ > 0 ? sum_ / double(count_) : 0.0;
         ++distance_.conditions;
@@ -47,8 +47,8 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Draws `samples` from each of two, (p + q) / 2 in all, and compares. `sample(which, u, x)` is false where nothing
-/// is drawn, `pdf(which, x)` a density; x are `Point`s.
+/// Samples `samples` from each of two, (p + q) / 2 in all, and compares. `sample(which, u, x)` is false where
+/// nothing is sampled, `pdf(which, x)` a density; x are `Point`s.
 template <class Point, class Sample, class Pdf>
 void meet(Distance& distance, std::uint32_t samples, std::uint32_t dimensions, const Sample& sample,
           const Pdf& pdf) {
@@ -180,8 +180,8 @@ Distance of_tables(const TableView (&view)[2], std::uint32_t samples) {
 std::string why_not_compared(const File& a, const File& b) {
     if (a.kind() != b.kind())
         return "one is of kind " + build::kind_name(a.kind()) + ", the other of kind " + build::kind_name(b.kind());
-    if (a.kind() == ACDF_KIND_LOCAL && (a.local().has_places() || b.local().has_places()))
-        return "files that tell places apart are compared by their bytes alone";
+    if (a.kind() == ACDF_KIND_LOCAL && (a.local().has_visibility() || b.local().has_visibility()))
+        return "files that store visibility cells are compared by their bytes alone";
     if (a.kind() != ACDF_KIND_TABLE) return "";
     const TableView view[2] = {a.table(), b.table()};
     bool same =

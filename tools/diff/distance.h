@@ -1,4 +1,4 @@
-// How far two files are from each other, as what draws from them sees it.
+// How far two files are from each other, as what samples from them sees it.
 #pragma once
 
 #include <acdf/reader.h>
@@ -16,7 +16,8 @@ struct Distance {
     double total = 0.0;         ///< of the two integrals: what they differ by, over the larger one
 };
 
-/// Why densities of the two cannot be compared: another kind or number of axes, places. Empty: they can be.
+/// Why densities of the two cannot be compared: another kind or number of axes, visibility cells. Empty: they can
+/// be.
 std::string why_not_compared(const File& a, const File& b);
 
 /// Of two files that can be compared, from `samples` of either for each condition (0: 2048, or 65536 where there is

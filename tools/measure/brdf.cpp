@@ -25,21 +25,21 @@ namespace acdf::tools {
 namespace {
 
 /// What the file is compared with, on the same views.
-struct Rivals {
+struct Baselines {
     double table_mean = 0.0, table_centre = 0.0; ///< infinite where it has no support for some of the light
     std::size_t table_bytes = 0;
     double ggx_alpha = 0.0, ggx = 0.0, cosine = 0.0;
 };
 
-Rivals rivals(const compress::Reflected& reflected, const input::Brdf& brdf,
-              const std::vector<compress::View>& views) {
+Baselines baselines(const compress::Reflected& reflected, const input::Brdf& brdf,
+                    const std::vector<compress::View>& views) {
     const measure::TabulatedBrdf mean(reflected, brdf.isotropic, measure::BrdfTableKind::mean),
         centre(reflected, brdf.isotropic, measure::BrdfTableKind::centre);
-    Rivals out;
+    Baselines out;
     out.table_bytes = mean.bytes();
     out.ggx_alpha = measure::best_ggx(reflected, views).alpha;
     const measure::GgxSampler ggx(out.ggx_alpha);
-    const std::vector<build::ViewDensity> densities = {
+    const std::vector<build::ViewPdf> densities = {
         [&](const double wo[3], const double wi[3]) { return mean.pdf(wo, wi); },
         [&](const double wo[3], const double wi[3]) { return centre.pdf(wo, wi); },
         [&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); }, measure::CosineSampler::pdf};
@@ -54,7 +54,7 @@ Rivals rivals(const compress::Reflected& reflected, const input::Brdf& brdf,
 double degrees(const compress::View& view) { return std::acos(view.cosine()) * (180.0 / ACDF_PI); }
 
 nlohmann::ordered_json report(const std::string& path, const File& file, const std::string& source,
-                              const build::BrdfAccuracy& a, const Rivals& r) {
+                              const build::BrdfAccuracy& a, const Baselines& r) {
     return {{"file", path},
             {"source", source},
             {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
@@ -81,7 +81,7 @@ nlohmann::ordered_json report(const std::string& path, const File& file, const s
 }
 
 void print_text(const std::string& path, const File& file, const std::string& source, const build::BrdfAccuracy& a,
-                const Rivals& r) {
+                const Baselines& r) {
     std::printf("%s against %s, %u random views\n", printable(path).c_str(), printable(source).c_str(), a.views);
     std::printf("  relative variance      %.6g   of one sample, mean over views; n samples have this over n\n",
                 a.relative_variance);
@@ -110,7 +110,7 @@ void print_text(const std::string& path, const File& file, const std::string& so
 void measure_brdf(const std::string& path, const File& file, const std::string& source, std::uint32_t view_count,
                   bool json, bool quiet) {
     const std::unique_ptr<input::Brdf> brdf = input::open_brdf(source);
-    if (!quiet) tell_of_another(path, file, source, brdf->sha256);
+    if (!quiet) note_another(path, file, source, brdf->sha256);
     const AcdfDescription& d = file.description();
     const compress::Reflected reflected =
         build::reflected_light(*brdf, static_cast<AcdfChannels>(d.channels),
@@ -120,7 +120,7 @@ void measure_brdf(const std::string& path, const File& file, const std::string& 
         build::BrdfAccuracy accuracy =
             build::summary(build::measure_views(file, reflected, views, build::sides(*brdf)));
         accuracy.cells = build::brdf_cells(file);
-        const Rivals r = rivals(reflected, *brdf, views);
+        const Baselines r = baselines(reflected, *brdf, views);
         if (json) std::fputs(json_text(report(path, file, source, accuracy, r)).c_str(), stdout);
         else print_text(path, file, source, accuracy, r);
         require_support(path, file, source, brdf->sha256, accuracy.support_violations);

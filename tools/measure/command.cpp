@@ -36,7 +36,7 @@ struct MeasureArguments {
     std::string mesh;
     input::UpAxis up = input::UpAxis::z;
     const CLI::App* command = nullptr;
-    bool rivals = false, json = false, quiet = false;
+    bool baselines = false, json = false, quiet = false;
 };
 
 struct Measured {
@@ -63,7 +63,7 @@ nlohmann::ordered_json report(const MeasureArguments& options, const File& file,
         {"cells", a.cells},
         {"bins", file.description().bin_count},
         {"total", a.total}};
-    if (a.combined) out["combined"] = true; // of the file and its company
+    if (a.combined) out["combined"] = true; // of the file and its partner
     return out;
 }
 
@@ -71,7 +71,7 @@ void print_text(const MeasureArguments& options, const File& file, const Measure
     const build::Accuracy& a = measured.accuracy;
     std::printf("%s against %s\n", printable(options.file).c_str(), printable(options.source).c_str());
     if (a.combined) {
-        std::printf("  relative variance      %.6g   a sample, with its company: not to be used alone\n",
+        std::printf("  relative variance      %.6g   a sample, with its MIS partner: not to be used alone\n",
                     a.relative_variance);
         std::printf("    noise                %s   at 16, 64, 256 samples where nothing hides the light\n",
                     noise_texts(a.relative_variance).c_str());
@@ -107,8 +107,8 @@ void refuse_options_of_other_kinds(const MeasureArguments& options, AcdfKind kin
             if (options.command->get_option(option)->count() > 0)
                 throw CLI::ValidationError(option, std::string("is for files of ") + of);
     };
-    if (kind != ACDF_KIND_LOCAL) refuse({"--rivals", "--normals", "--scene"}, "local environments");
-    if (kind != ACDF_KIND_TABLE) refuse({"--with"}, "tables");
+    if (kind != ACDF_KIND_LOCAL) refuse({"--baselines", "--normals", "--scene"}, "local environments");
+    if (kind != ACDF_KIND_TABLE) refuse({"--mis"}, "tables");
     if (kind != ACDF_KIND_BRDF) refuse({"--views"}, "BRDFs");
     if (kind == ACDF_KIND_TABLE || kind == ACDF_KIND_BRDF)
         refuse({"--projection", "--bad-pixels", "--on-black"}, "environments");
@@ -126,11 +126,11 @@ void run(const MeasureArguments& options) {
     case ACDF_KIND_BRDF:
         return measure_brdf(options.file, loaded.file, options.source, options.views, options.json, options.quiet);
     case ACDF_KIND_LOCAL:
-        if (!loaded.file.local().has_places() && options.command->get_option("--points")->count() > 0)
-            throw CLI::ValidationError("--points", "is for files that tell places apart");
+        if (!loaded.file.local().has_visibility() && options.command->get_option("--points")->count() > 0)
+            throw CLI::ValidationError("--points", "is for files that store visibility cells");
         return measure_local(loaded.file,
                              {options.file, options.source, options.input, options.normals, options.mesh,
-                              options.up, options.points, options.rivals, options.json, options.quiet});
+                              options.up, options.points, options.baselines, options.json, options.quiet});
     default:
         break;
     }
@@ -152,7 +152,7 @@ void run(const MeasureArguments& options) {
         throw Failure(
             options.file + ": its density is 0 where " + options.source +
             ", as it is read here, has light; measure with the options that it was made with, which `acdf "
-            "info` tells");
+            "info` prints");
 }
 
 } // namespace
@@ -174,7 +174,7 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->type_name("SOURCE")
         ->group("Input");
     command
-        .add_option("--with", options->other,
+        .add_option("--mis", options->other,
                     "Of a table that was made to be combined with another one: the .npy of that one")
         ->type_name("")
         ->option_text("OTHER.npy")
@@ -188,10 +188,11 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->option_text("N [256]")
         ->group("Input");
     command
-        .add_option("--scene", options->mesh,
-                    "Of a file that tells places apart: the mesh (.obj, .ply, .instances) to look from, usually "
-                    "the one it was made for; its variance there is told, beside that of its normals alone. Of "
-                    "other local files: what acdf local takes, to measure by the normals of a scene alone")
+        .add_option(
+            "--scene", options->mesh,
+            "Of a file that stores visibility cells: the mesh (.obj, .ply, .instances) to look from, usually "
+            "the one it was made for; its variance there is printed beside that of its normals alone. Of "
+            "other local files: what acdf local takes, to measure by the normals of a scene alone")
         ->type_name("FILE")
         ->group("Input");
     add_scene_up(command, options->up, "Which axis of the scene points up, as in acdf local")->group("Input");
@@ -205,14 +206,14 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->group("Input");
     command
         .add_flag(
-            "--rivals", options->rivals,
+            "--baselines", options->baselines,
             "Of a local environment: beside it what a renderer can do without one: resampling 32 candidates, tiles "
             "weighted on the fly, cosine sampling")
         ->group("Output");
     add_json(command, options->json);
     add_quiet(command, options->quiet);
     command.footer(help_footer(
-        "No samples are drawn, so the figures carry no noise of their own. Against another source than "
+        "Nothing is sampled, so the figures carry no noise of their own. Against another source than "
         "the file's own "
         "a line on stderr says so; it is an error where that has light and the density is 0. Its own is read with "
         "the --projection that it was made with.",

@@ -11,7 +11,7 @@
 #include "build/local.h"
 #include "compress/parallel.h"
 #include "measure/samplers/light_samplers.h"
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 #include "measure/samplers/tiling.h"
 #include "measure/scenes/mesh_stage.h"
 #include "tools/cli/noise.h"
@@ -31,7 +31,7 @@ namespace acdf::tools {
 namespace {
 
 /// Another way to estimate irradiance: mean relative variance of a sample, and what it keeps in memory.
-struct Rival {
+struct Baseline {
     const char* key;
     const char* text;
     double relative_variance = 0.0;
@@ -41,24 +41,24 @@ struct Rival {
 constexpr std::uint32_t kCandidates = 32;
 
 /// Of a map; `columns` and `rows` tiles.
-struct LocalRivals {
+struct LocalBaselines {
     measure::LocalFullCdf full;
     measure::Resampling resampling;
     measure::TilingOnTheFly tiling;
     measure::CosineHemisphere cosine;
 
-    LocalRivals(const compress::Target& target, std::uint32_t columns, std::uint32_t rows)
+    LocalBaselines(const compress::Target& target, std::uint32_t columns, std::uint32_t rows)
         : full(target), resampling(target, kCandidates), tiling(target, columns, rows), cosine(target) {}
 };
 
 /// Their noise is summed as that of the file is.
-std::vector<Rival> rivals_of(const compress::Target& target, const std::vector<build::Normal>& normals) {
+std::vector<Baseline> baselines_of(const compress::Target& target, const std::vector<build::Normal>& normals) {
     const std::uint32_t columns = std::min(32u, target.columns), rows = std::min(16u, target.rows);
     const build::FineTexels texels(target);
-    const LocalRivals made(target, columns, rows);
-    std::optional<LocalRivals> divided;
+    const LocalBaselines made(target, columns, rows);
+    std::optional<LocalBaselines> divided;
     if (&texels.target() != &target) divided.emplace(texels.target(), columns, rows);
-    const LocalRivals& summed = divided ? *divided : made;
+    const LocalBaselines& summed = divided ? *divided : made;
     const auto mean = [&](const std::function<double(const float*)>& variance) {
         std::vector<double> each(normals.size());
         compress::parallel_for(std::size_t{0}, normals.size(),
@@ -67,8 +67,8 @@ std::vector<Rival> rivals_of(const compress::Target& target, const std::vector<b
         for (double v : each) sum += v;
         return sum / double(normals.size());
     };
-    const auto of = [&](const auto& rival) {
-        return mean([&rival](const float* n) { return rival.relative_variance(n); });
+    const auto of = [&](const auto& baseline) {
+        return mean([&baseline](const float* n) { return baseline.relative_variance(n); });
     };
     return {{"full_cdf", "full-resolution CDF", of(summed.full), made.full.bytes()},
             {"resampling_32", "resampling 32 candidates", of(summed.resampling), made.resampling.bytes()},
@@ -96,20 +96,20 @@ std::vector<build::Normal> normals_of(const LocalMeasureOptions& options, bool o
 }
 
 /// Over points of a mesh that see any light.
-struct PlacesAccuracy {
+struct VisibilityAccuracy {
     std::size_t points = 0; ///< 0: not measured
     double relative_variance = 0.0, worst = 0.0;
-    double normals_alone = 0.0; ///< of the same file, its places not told apart
+    double normals_alone = 0.0; ///< of the same file, without its visibility cells
     std::uint64_t support_violations = 0;
 };
 
-PlacesAccuracy measure_places(const File& file, const LocalMeasureOptions& options,
-                              const compress::Target& target) {
+VisibilityAccuracy measure_visibility(const File& file, const LocalMeasureOptions& options,
+                                      const compress::Target& target) {
     auto surface = std::make_shared<const input::MeshSurface>(input::read_triangles(options.mesh, options.up));
     const measure::MeshStage stage(std::move(surface), options.up == input::UpAxis::y, target, options.points);
     const auto with = measure::file_sampler(file), without = measure::normals_alone_sampler(file);
     const measure::StageVariances found = measure::variances_on(stage, {with.get(), without.get()});
-    PlacesAccuracy out;
+    VisibilityAccuracy out;
     out.points = found.of_points[0].size();
     out.support_violations = found.lost[0];
     if (out.points == 0) throw Failure(options.mesh + ": no point of it sees any light");
@@ -121,10 +121,10 @@ PlacesAccuracy measure_places(const File& file, const LocalMeasureOptions& optio
     return out;
 }
 
-/// How many times as much a rival has; 1 where neither has any.
-double times(double rival, double own) { return rival <= own && own <= rival ? 1.0 : rival / own; }
+/// How many times as much a baseline has; 1 where neither has any.
+double times(double baseline, double own) { return baseline <= own && own <= baseline ? 1.0 : baseline / own; }
 
-nlohmann::ordered_json places_json(const PlacesAccuracy& p) {
+nlohmann::ordered_json visibility_json(const VisibilityAccuracy& p) {
     return {{"points", p.points},
             {"relative_variance", p.relative_variance},
             {"relative_variance_worst", p.worst},
@@ -133,8 +133,8 @@ nlohmann::ordered_json places_json(const PlacesAccuracy& p) {
             {"support_violations", p.support_violations}};
 }
 
-void print_places(const PlacesAccuracy& p) {
-    std::printf("  at %zu places of the scene, with what it hides\n", p.points);
+void print_visibility(const VisibilityAccuracy& p) {
+    std::printf("  at %zu positions of the scene, with what it hides\n", p.points);
     std::printf("    relative variance    %.6g; %.6g at worst\n", p.relative_variance, p.worst);
     std::printf("    by normals alone     %.6g   %.4g times as much\n", p.normals_alone,
                 times(p.normals_alone, p.relative_variance));
@@ -145,8 +145,8 @@ void print_places(const PlacesAccuracy& p) {
 struct LocalMeasured {
     build::LocalAccuracy normals;
     build::Accuracy whole; ///< for points without a normal
-    std::vector<Rival> rivals;
-    PlacesAccuracy places;
+    std::vector<Baseline> baselines;
+    VisibilityAccuracy visibility;
 };
 
 nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& options, const LocalMeasured& measured) {
@@ -177,21 +177,22 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
           {"max_weight", whole.max_weight},
           {"support_violations", whole.support_violations},
           {"cells", whole.cells}}}};
-    if (a.combined) out["combined"] = true; // of the file and its company
-    for (const Rival& rival : measured.rivals)
-        out["rivals"][rival.key] = {{"relative_variance", rival.relative_variance}, {"bytes", rival.bytes}};
-    if (measured.places.points > 0) out["places"] = places_json(measured.places);
+    if (a.combined) out["combined"] = true; // of the file and its partner
+    for (const Baseline& baseline : measured.baselines)
+        out["baselines"][baseline.key] = {{"relative_variance", baseline.relative_variance},
+                                          {"bytes", baseline.bytes}};
+    if (measured.visibility.points > 0) out["visibility"] = visibility_json(measured.visibility);
     return out;
 }
 
 void print_text(const File& file, const LocalMeasureOptions& options, const LocalMeasured& measured) {
     const build::LocalAccuracy& a = measured.normals;
-    const PlacesAccuracy& places = measured.places;
+    const VisibilityAccuracy& visibility = measured.visibility;
     std::printf("%s against %s, %u %s\n", printable(options.file).c_str(), printable(options.source).c_str(),
                 a.lit_normals,
-                options.mesh.empty() || places.points > 0 ? "random normals" : "normals of the scene");
+                options.mesh.empty() || visibility.points > 0 ? "random normals" : "normals of the scene");
     std::printf("  relative variance      %.6g   %s\n", a.relative_variance,
-                a.combined ? "a sample of the irradiance, with its company: not to be used alone"
+                a.combined ? "a sample of the irradiance, with its MIS partner: not to be used alone"
                            : "of one sample of the irradiance, mean over normals");
     std::printf("    noise                %s   at 16, 64, 256 samples where nothing hides the light\n",
                 noise_texts(a.relative_variance).c_str());
@@ -209,36 +210,36 @@ void print_text(const File& file, const LocalMeasureOptions& options, const Loca
                 measured.whole.relative_variance);
     std::printf("    largest weight       %.6g\n", measured.whole.max_weight);
     std::printf("  bytes                  %" PRIu64 "\n", file.size());
-    for (const Rival& rival : measured.rivals)
-        std::printf("  %-30s relative variance %.6g, %" PRIu64 " bytes\n", rival.text, rival.relative_variance,
-                    rival.bytes);
-    if (places.points > 0) print_places(places);
+    for (const Baseline& baseline : measured.baselines)
+        std::printf("  %-30s relative variance %.6g, %" PRIu64 " bytes\n", baseline.text,
+                    baseline.relative_variance, baseline.bytes);
+    if (visibility.points > 0) print_visibility(visibility);
 }
 
 } // namespace
 
 void measure_local(const File& file, const LocalMeasureOptions& options) {
-    const bool mesh = !options.mesh.empty() && file.local().has_places();
-    if (mesh && file.company()) throw Failure(options.file + ": is made for a company; leave out --scene");
+    const bool mesh = !options.mesh.empty() && file.local().has_visibility();
+    if (mesh && file.partner()) throw Failure(options.file + ": is made for an MIS partner; leave out --scene");
     const ProbeTarget source = source_target(options.file, file, options.source, options.input, options.quiet);
     const std::vector<build::Normal> normals = normals_of(options, !mesh && !options.mesh.empty());
     LocalMeasured measured;
     measured.normals = build::summary(build::measure_normals(file, builder::grid_of(source.target), normals));
     measured.whole = build::measure_whole(file, builder::grid_of(source.target));
     compress::Target map;
-    if (options.rivals)
-        measured.rivals = rivals_of(compress::looked_up(builder::grid_of(source.target), map), normals);
+    if (options.baselines)
+        measured.baselines = baselines_of(compress::looked_up(builder::grid_of(source.target), map), normals);
     if (mesh) { // whose points see lat-long texels
         const bool square = builder::grid_of(source.target).parameterization == ACDF_PARAM_OCTAHEDRAL;
         const builder::Target light =
             square ? latlong_target(file, options.source, options.input).target : source.target;
-        measured.places = measure_places(file, options, compress::looked_up(builder::grid_of(light), map));
+        measured.visibility = measure_visibility(file, options, compress::looked_up(builder::grid_of(light), map));
     }
     if (options.json) std::fputs(json_text(report(file, options, measured)).c_str(), stdout);
     else print_text(file, options, measured);
     require_support(options.file, file, options.source, source.probe.source_sha256,
                     measured.normals.support_violations + measured.whole.support_violations +
-                        measured.places.support_violations);
+                        measured.visibility.support_violations);
 }
 
 } // namespace acdf::tools

@@ -15,10 +15,11 @@ struct LocalMeasureOptions {
     std::string file, source; ///< paths
     input::ProbeOptions input;
     std::uint32_t normals = 256;
-    std::string mesh; ///< a path: places on it are measured, too; of files without places, only its normals
+    std::string
+        mesh; ///< a path: positions on it are measured, too; of files without visibility cells, only its normals
     input::UpAxis up = input::UpAxis::z;
     std::uint32_t points = 64; ///< on the mesh
-    bool rivals = false, json = false, quiet = false;
+    bool baselines = false, json = false, quiet = false;
 };
 
 /// Compares a local environment file with its probe over random normals, or a scene's, and with what a renderer

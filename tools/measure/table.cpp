@@ -4,7 +4,7 @@
 #include "tools/cli/source_check.h"
 
 #include "build/table.h"
-#include "build/table_company.h"
+#include "build/table_partner.h"
 #include "input/npy.h"
 #include "input/sha256.h"
 #include "tools/cli/noise.h"
@@ -55,7 +55,7 @@ nlohmann::ordered_json report(const std::string& path, const File& file, const s
         {"bins", file.description().bin_count},
         {"bins_with_energy", a.lit_bins},
         {"total", file.description().total}};
-    if (a.combined) out["combined"] = true; // of the file and its company
+    if (a.combined) out["combined"] = true; // of the file and its partner
     return out;
 }
 
@@ -63,7 +63,7 @@ void print_text(const std::string& path, const File& file, const std::string& so
                 const build::TableAccuracy& a) {
     std::printf("%s against %s\n", printable(path).c_str(), printable(source).c_str());
     std::printf("  relative variance      %.6g   %s\n", a.relative_variance,
-                a.combined ? "a sample, with its company: not to be used alone"
+                a.combined ? "a sample, with its MIS partner: not to be used alone"
                            : "of one sample; n samples have this over n");
     std::printf("    noise                %s   at 16, 64, 256 samples\n", noise_texts(a.relative_variance).c_str());
     if (file.description().bin_count > 1) {
@@ -101,19 +101,19 @@ input::NpyArray read_source(const std::string& path, const File& file, const std
 
 void measure_table(const std::string& path, const File& file, const std::string& source, const std::string& other,
                    bool json, bool quiet) {
-    if (file.company() && other.empty())
-        throw Failure(path + ": it was made to be combined with another table; tell which (--with OTHER.npy)");
-    if (!file.company() && !other.empty())
-        throw CLI::ValidationError("--with", "is for tables with a company, which " + path + " is not");
+    if (file.partner() && other.empty())
+        throw Failure(path + ": it was made to be combined with another table; name it (--mis OTHER.npy)");
+    if (!file.partner() && !other.empty())
+        throw CLI::ValidationError("--mis", "is for tables with an MIS partner, which " + path + " is not");
     const input::NpyArray array = read_source(path, file, source);
     const std::string sha256 = input::file_sha256(source);
-    if (!quiet) tell_of_another(path, file, source, sha256);
+    if (!quiet) note_another(path, file, source, sha256);
     const std::vector<compress::Grid> bins = build::table_grids(array, file.table().indexed_count());
     try {
         build::TableAccuracy accuracy;
-        if (file.company()) {
+        if (file.partner()) {
             const input::NpyArray beside = read_source(path, file, other);
-            if (!quiet) tell_of_another(path, file, other, input::file_sha256(other), "company.sha256");
+            if (!quiet) note_another(path, file, other, input::file_sha256(other), "partner.sha256");
             accuracy = build::summary(
                 build::measure_bins_beside(file, bins, build::table_grids(beside, file.table().indexed_count())));
             accuracy.combined = true;

@@ -12,10 +12,10 @@ namespace {
 using Corner = std::array<std::uint32_t, 4>;
 
 Corner corner_of(const AcdfBrdf& brdf, const AcdfBrdfView& view, const float wi[3]) {
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     AcdfRange range[2];
     double side;
-    if (!acdf_brdf_place(&brdf, &view, wi, &place, &side)) return {};
+    if (!acdf_brdf_half_position(&brdf, &view, wi, &place, &side)) return {};
     acdf_brdf_find(&brdf, &view, &place, range, nullptr);
     return {range[0].low, range[0].high, range[1].low, range[1].high};
 }
@@ -48,7 +48,7 @@ void PlottedView::direction(float wo[3]) const {
     wo[2] = static_cast<float>(std::cos(angles.theta * degree));
 }
 
-Density density_of(const PlottedView& view) {
+Density pdf_of(const PlottedView& view) {
     return [view](const float wi[3]) {
         float wo[3];
         view.direction(wo);

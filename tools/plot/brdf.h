@@ -30,7 +30,7 @@ struct PlottedView {
 
 /// The stored density, exactly: below the surface too, where a few samples fall. The view's File must
 /// outlive the result.
-Density density_of(const PlottedView& view);
+Density pdf_of(const PlottedView& view);
 
 /// As of environments: lines along the borders of cells, none where cells are narrower than two pixels.
 std::vector<float> knot_opacity(const PlottedView& view, const PlotMap& map);

@@ -19,7 +19,7 @@ using measure::operator-;
 using measure::operator*;
 
 /// Of a cell, told by where its row lies: hues far apart for neighbours.
-Colour cell_colour(const AcdfPlaceTable& table, const std::uint8_t* row) {
+Colour cell_colour(const AcdfVisibilityTable& table, const std::uint8_t* row) {
     const auto number = static_cast<double>(row - table.rows);
     const double hue = 6.0 * std::fmod(number * 0.6180339887498949, 1.0),
                  light = 0.75 + 0.25 * std::fmod(number * 0.7548776662466927, 1.0);
@@ -62,11 +62,11 @@ Colour shown(const LocalEnvironmentView& view, const measure::Hit& hit, double a
         position[k] = static_cast<float>(own[k]);
         normal[k] = static_cast<float>(hit.n[k]);
     }
-    const AcdfPlaceMixture place = view.at(position, normal).place;
-    Colour out = place.count > 0 ? Colour{} : zero_colour;
-    for (int i = 0; i < place.count; ++i) {
-        const Colour own_colour = cell_colour(view.data().places, place.row[i]);
-        for (std::size_t k = 0; k < 3; ++k) out[k] += static_cast<float>(place.weight[i]) * own_colour[k];
+    const AcdfVisibilityMixture visibility = view.at(position, normal).visibility;
+    Colour out = visibility.count > 0 ? Colour{} : zero_colour;
+    for (int i = 0; i < visibility.count; ++i) {
+        const Colour own_colour = cell_colour(view.data().visibility, visibility.row[i]);
+        for (std::size_t k = 0; k < 3; ++k) out[k] += static_cast<float>(visibility.weight[i]) * own_colour[k];
     }
     for (float& channel : out) channel *= static_cast<float>(0.45 + 0.55 * askance);
     return out;

@@ -1,4 +1,4 @@
-// The cells of places over the mesh that they were made for.
+// The cells of visibility over the mesh that they were made for.
 #pragma once
 
 #include "images/picture.h"
@@ -21,8 +21,8 @@ struct CellsOptions {
 };
 
 /// As displayed: the mesh seen by a camera, each cell with a colour of its own, darker where the surface is seen
-/// askance; colours are mixed as the file mixes the cells. Where it tells no places apart, the surface is grey.
-/// Throws input::Error.
+/// askance; colours are mixed as the file mixes the cells. Where it stores no visibility cells, the surface is
+/// grey. Throws input::Error.
 images::Picture cells_picture(const LocalEnvironmentView& view, const CellsOptions& options);
 
 } // namespace acdf::tools

@@ -118,8 +118,8 @@ std::vector<Drawing> draw_all(const PlotArguments& options, const Plotted& sourc
     }
     for (const NamedNormal& named : panel_normals) {
         Plotted panel;
-        panel.local.emplace(PlottedNormal{source.local->local, named.normal, source.local->place});
-        panel.density = density_of(*panel.local);
+        panel.local.emplace(PlottedNormal{source.local->local, named.normal, source.local->position});
+        panel.density = pdf_of(*panel.local);
         panel.columns = source.columns;
         panel.rows = source.rows;
         panel.panels = true;
@@ -170,15 +170,15 @@ void check_mesh(const CLI::App& command, const PlotArguments& options) {
         for (const char* option : {"--scene-up", "--from", "--to"})
             if (given(option)) throw CLI::ValidationError(option, "is of the mesh given by --scene");
     if (!options.mesh.empty())
-        for (const char* option : {"--place", "--normal", "--view", "--projection", "--range", "--no-knots",
+        for (const char* option : {"--position", "--normal", "--view", "--projection", "--range", "--no-knots",
                                    "--no-legend", "--probe-projection"})
             if (given(option)) throw CLI::ValidationError(option, "is for a density, not for cells over a mesh");
 }
 
 std::vector<std::uint8_t> make_cells(const PlotArguments& options) {
     const LoadedFile stored = load_file(options.file);
-    if (stored.file.kind() != ACDF_KIND_LOCAL || !stored.file.local().has_places())
-        throw Failure(options.file + ": tells no places apart; leave out --scene");
+    if (stored.file.kind() != ACDF_KIND_LOCAL || !stored.file.local().has_visibility())
+        throw Failure(options.file + ": stores no visibility cells; leave out --scene");
     CellsOptions cells;
     cells.mesh = options.mesh;
     cells.up = options.up;
@@ -187,7 +187,7 @@ std::vector<std::uint8_t> make_cells(const PlotArguments& options) {
     if (options.width > 0) cells.width = options.width;
     cells.height = cells.width * 3 / 4;
     return encode_png(cells_picture(stored.file.local(), cells),
-                      {"acdf " ACDF_VERSION, "Cells of places, a colour each"});
+                      {"acdf " ACDF_VERSION, "Visibility cells, a colour each"});
 }
 
 void run(const PlotArguments& options) {
@@ -245,16 +245,17 @@ void add_picture_options(CLI::App& command, PlotArguments& options) {
     command
         .add_flag_callback(
             "--no-legend", [&options] { options.legend = false; },
-            "Leave out title and colour bar (drawn by default): exactly the density's pixels, to place in a figure")
+            "Leave out title and colour bar (drawn by default): exactly the density's pixels, for a figure")
         ->group("Picture");
 }
 
 void add_mesh_options(CLI::App& command, PlotArguments& options) {
     command
-        .add_option("--scene", options.mesh,
-                    "For a file that tells places apart, the mesh (.obj, .ply, .instances) that it was made for: "
-                    "its cells are "
-                    "shown over it, not a density")
+        .add_option(
+            "--scene", options.mesh,
+            "For a file that stores visibility cells, the mesh (.obj, .ply, .instances) that it was made for: "
+            "its cells are "
+            "shown over it, not a density")
         ->type_name("FILE")
         ->group("Cells over a mesh");
     add_scene_up(command, options.up, "Which axis of the scene points up, as in acdf local")
@@ -291,12 +292,11 @@ void add_plot(CLI::App& program, int& exit_code) {
         ->group("Input");
     add_normal(command, options->normal, "Input",
                "; the white line is its horizon. Without it the six axes are shown");
-    comma_separated(
-        command.add_option(
-            "--place", options->place,
-            "For a file that tells places apart (acdf local --places), the position in its scene; without it "
-            "what is drawn where a position is not known"),
-        3)
+    comma_separated(command.add_option("--position", options->position,
+                                       "For a file that stores visibility cells (acdf local --visibility), the "
+                                       "position in its scene; without it "
+                                       "what is drawn where a position is not known"),
+                    3)
         ->option_text("X,Y,Z")
         ->group("Input");
     add_mesh_options(command, *options);
@@ -314,7 +314,7 @@ void add_plot(CLI::App& program, int& exit_code) {
                     "acdf plot sky.exr -o full.png --projection angular --range 1e-3:100\n"
                     "acdf plot local.acdf -o six.png\n"
                     "acdf plot local.acdf -o up.png --normal 0,0,1 --range 1e-3:100\n"
-                    "acdf plot room.acdf -o floor.png --place 0.5,1,0 --normal 0,0,1\n"
+                    "acdf plot room.acdf -o floor.png --position 0.5,1,0 --normal 0,0,1\n"
                     "acdf plot room.acdf -o cells.png --scene room.obj --from 4,-6,3 --to 0,0,1\n"
                     "acdf plot nickel.acdf -o lobe.png --view 60\n"
                     "acdf plot sky.acdf -o density.exr --width 4096"));

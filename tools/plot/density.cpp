@@ -7,11 +7,11 @@
 
 namespace acdf::tools {
 
-Density density_of(const EnvironmentView& view) {
+Density pdf_of(const EnvironmentView& view) {
     return [view](const float direction[3]) { return view.pdf(direction); };
 }
 
-Density density_of(const compress::Target& target) {
+Density pdf_of(const compress::Target& target) {
     const double scale = 1.0 / compress::integral(target);
     const bool square = target.parameterization == ACDF_PARAM_OCTAHEDRAL;
     const build::Map grid{square ? build::Layout::octahedral : build::Layout::latlong,

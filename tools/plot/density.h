@@ -16,11 +16,11 @@ namespace acdf::tools {
 using Density = std::function<float(const float direction[3])>;
 
 /// The stored density, exactly. The view's File must outlive the result.
-Density density_of(const EnvironmentView& view);
+Density pdf_of(const EnvironmentView& view);
 
 /// The density proportional to `target` at full resolution (nearest lookup). `target` must outlive the result and
 /// have energy.
-Density density_of(const compress::Target& target);
+Density pdf_of(const compress::Target& target);
 
 /// What pixels outside of the disc of an angular map hold.
 constexpr float shows_nothing = -1.0f;

@@ -11,13 +11,13 @@ namespace acdf::tools {
 namespace {
 
 AcdfLocalPoint point_of(const PlottedNormal& plotted) {
-    if (plotted.place) return plotted.local.at(plotted.place->data(), plotted.normal.data());
+    if (plotted.position) return plotted.local.at(plotted.position->data(), plotted.normal.data());
     return plotted.local.at(plotted.normal.data());
 }
 
 } // namespace
 
-Density density_of(const PlottedNormal& plotted) {
+Density pdf_of(const PlottedNormal& plotted) {
     const AcdfLocalPoint point = point_of(plotted);
     return [view = plotted.local, point](const float direction[3]) { return view.pdf(point, direction); };
 }

@@ -1,4 +1,4 @@
-// The density of a local environment for one normal, at a place or anywhere, and its horizon.
+// The density of a local environment for one normal, at a position or anywhere, and its horizon.
 #pragma once
 
 #include "images/picture.h"
@@ -17,11 +17,11 @@ using Normal = std::array<float, 3>;
 struct PlottedNormal {
     LocalEnvironmentView local;
     Normal normal;
-    std::optional<std::array<float, 3>> place = {}; ///< a position of the file's scene
+    std::optional<std::array<float, 3>> position = {}; ///< a position of the file's scene
 };
 
 /// The stored density, exactly. The view's File must outlive the result.
-Density density_of(const PlottedNormal& plotted);
+Density pdf_of(const PlottedNormal& plotted);
 
 /// The borders of cells, as of environments.
 std::vector<float> knot_opacity(const PlottedNormal& plotted, const PlotMap& map,

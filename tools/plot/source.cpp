@@ -59,7 +59,7 @@ void load_brdf(const PlotArguments& options, Plotted& source) {
     const auto view = parse_view(options.view.empty() ? "45" : options.view);
     if (!view) throw CLI::ValidationError("--view", "needs angles in degrees such as 60 or 60,30; theta below 90");
     source.brdf.emplace(PlottedView{file.brdf(), *view});
-    source.density = density_of(*source.brdf);
+    source.density = pdf_of(*source.brdf);
     source.columns = 1024;
     source.rows = 512;
     source.title = {shown_name(options.file), "view " + to_string(*view),
@@ -77,13 +77,14 @@ void add_variance(const File& file, std::vector<std::string>& title) {
     }
 }
 
-std::optional<std::array<float, 3>> chosen_place(const PlotArguments& options, const LocalEnvironmentView& view) {
-    const std::vector<float>& x = options.place;
+std::optional<std::array<float, 3>> chosen_position(const PlotArguments& options,
+                                                    const LocalEnvironmentView& view) {
+    const std::vector<float>& x = options.position;
     if (x.empty()) return std::nullopt;
-    if (!view.has_places()) throw Failure(options.file + ": tells no places apart; leave out --place");
+    if (!view.has_visibility()) throw Failure(options.file + ": stores no visibility cells; leave out --position");
     const float up[3] = {0.0f, 0.0f, 1.0f};
-    if (view.at(x.data(), up).place.count == 0)
-        throw Failure(options.file + ": the place of --place lies outside of its scene; see acdf info");
+    if (view.at(x.data(), up).visibility.count == 0)
+        throw Failure(options.file + ": the position of --position lies outside of its scene; see acdf info");
     return std::array<float, 3>{x[0], x[1], x[2]};
 }
 
@@ -91,8 +92,8 @@ void load_local(const PlotArguments& options, Plotted& source) {
     const File& file = source.stored.file;
     source.panels = options.normal.empty() && !is_exr(options.output);
     const Normal chosen = source.panels ? panel_normals[0].normal : chosen_normal(options.file, options.normal);
-    source.local.emplace(PlottedNormal{file.local(), chosen, chosen_place(options, file.local())});
-    source.density = density_of(*source.local);
+    source.local.emplace(PlottedNormal{file.local(), chosen, chosen_position(options, file.local())});
+    source.density = pdf_of(*source.local);
     source.columns = file.axis(ACDF_AXIS_PHI).resolution;
     source.rows = file.axis(ACDF_AXIS_THETA).resolution;
     const Normal& n = source.local->normal;
@@ -100,11 +101,11 @@ void load_local(const PlotArguments& options, Plotted& source) {
     std::snprintf(normal, sizeof normal, "normal %.3g, %.3g, %.3g", double{n[0]}, double{n[1]}, double{n[2]});
     source.title = {shown_name(options.file)};
     if (!source.panels) source.title.emplace_back(normal);
-    if (const auto& x = source.local->place) {
-        char place[96];
-        std::snprintf(place, sizeof place, "place %.4g, %.4g, %.4g", double{(*x)[0]}, double{(*x)[1]},
+    if (const auto& x = source.local->position) {
+        char position[96];
+        std::snprintf(position, sizeof position, "position %.4g, %.4g, %.4g", double{(*x)[0]}, double{(*x)[1]},
                       double{(*x)[2]});
-        source.title.emplace_back(place);
+        source.title.emplace_back(position);
     }
     source.title.push_back(to_readable_size(file.size()));
     add_variance(file, source.title);
@@ -114,7 +115,8 @@ void load_local(const PlotArguments& options, Plotted& source) {
 void refuse_options_of_other_kinds(const PlotArguments& options, AcdfKind kind) {
     if (kind != ACDF_KIND_BRDF && !options.view.empty()) throw CLI::ValidationError("--view", "is for BRDF files");
     if (kind == ACDF_KIND_LOCAL) return;
-    if (!options.place.empty()) throw CLI::ValidationError("--place", "is for local environments with places");
+    if (!options.position.empty())
+        throw CLI::ValidationError("--position", "is for local environments with visibility cells");
     refuse_normal(options.file, options.normal);
 }
 
@@ -129,7 +131,7 @@ void load_stored(const PlotArguments& options, Plotted& source) {
         fail_kind(options.file, source.stored.file, "plot",
                   "environments and BRDFs, as `acdf env` and `acdf brdf` make them");
     const File& file = source.stored.file;
-    source.density = density_of(file.environment());
+    source.density = pdf_of(file.environment());
     source.columns = file.axis(ACDF_AXIS_PHI).resolution;
     source.rows = file.axis(ACDF_AXIS_THETA).resolution;
     std::unordered_map<std::uint32_t, std::uint64_t> known;
@@ -143,7 +145,7 @@ void load_stored(const PlotArguments& options, Plotted& source) {
 void load_image(const PlotArguments& options, Plotted& source) {
     const input::Probe probe = load_probe(options.file, options.input, options.quiet);
     source.target = probe_target(options.file, probe);
-    source.density = density_of(builder::grid_of(source.target));
+    source.density = pdf_of(builder::grid_of(source.target));
     source.columns = source.target.columns();
     source.rows = source.target.rows();
     source.title = {shown_name(options.file), "full resolution",

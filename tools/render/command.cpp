@@ -257,7 +257,8 @@ void add_measurement_options(CLI::App& command, RenderArguments& options) {
         .add_option_function<std::string>(
             "--sequence",
             [&options, sequences](const std::string& name) { options.sequences = sequences.at(name); },
-            "Random numbers: independent ones; sobol, a scrambled Sobol' sequence in each pixel, as renderers draw "
+            "Random numbers: independent ones; sobol, a scrambled Sobol' sequence in each pixel, as renderers "
+            "sample "
             "them; or both, one table each")
         ->check(CLI::IsMember({"independent", "sobol", "both"}))
         ->type_name("")
@@ -293,14 +294,15 @@ void add_scene_options(CLI::App& command, RenderArguments& options) {
         ->option_text("DIR [.]")
         ->group("Input");
     command
-        .add_option("--sampler", options.samplers,
-                    "Instead of the scene's; repeat for several, the first is the baseline: full-cdf, cosine, "
-                    "tiles:32x16, visibility:32x16, portals, portals:uniform, env:64KiB, local:1MB, places:4MB, "
-                    "places-portals:4MB, "
-                    "brdf:64KiB, brdf-table, brdf-table:centre, ggx:0.1, alias, "
-                    "hierarchical, downsampled:64x32, mis-compensated, strata, ris:32, file:my.acdf, "
-                    "mis(local:1MB,cosine), mis(4*local,cosine), mis-power(...), product(local:1MB,brdf:64KiB) and "
-                    "others of docs/render.md")
+        .add_option(
+            "--sampler", options.samplers,
+            "Instead of the scene's; repeat for several, the first is the baseline: full-cdf, cosine, "
+            "tiles:32x16, visibility-cache:32x16, portals, portals:uniform, env:64KiB, local:1MB, visibility:4MB, "
+            "visibility-portals:4MB, "
+            "brdf:64KiB, brdf-table, brdf-table:centre, ggx:0.1, alias, "
+            "hierarchical, downsampled:64x32, mis-compensated, strata, ris:32, file:my.acdf, "
+            "mis(local:1MB,cosine), mis(4*local,cosine), mis-power(...), product(local:1MB,brdf:64KiB) and "
+            "others of docs/render.md")
         ->option_text("TEXT ...")
         ->expected(1)
         ->take_all()
@@ -336,7 +338,7 @@ void add_render(CLI::App& program, int& exit_code) {
         "variance of an estimate, mean over pixels with its 95 % confidence interval and median, the noise of that "
         "at 16, 64 and 256 samples, and the gain over the first sampler by equal samples and by equal time; it "
         "says "
-        "where a rival wins. Where a scene has objects that the camera does not "
+        "where a baseline wins. Where a scene has objects that the camera does not "
         "see, all is done again without anything in the way of light.",
         "acdf render --scene tools/render/scenes/demo.json -o out\n"
         "acdf render --scene tools/render/scenes/e4-grace.json --data ~/probes -o out --size 160x120\n"

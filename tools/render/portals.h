@@ -1,4 +1,4 @@
-// The portals of a scene for files of places.
+// The portals of a scene for files with visibility cells.
 #pragma once
 
 #include "measure/scenes/scene.h"
@@ -7,7 +7,7 @@
 
 namespace acdf::tools {
 
-/// A rectangle in the frame of directions as one in the scene's own coordinates, which `places` tells.
-builder::Portal told_portal(const builder::Places& places, const measure::Portal& portal);
+/// A rectangle in the frame of directions as one in the scene's own coordinates, which `visibility` tells.
+builder::Portal portal_of(const builder::Visibility& visibility, const measure::Portal& portal);
 
 } // namespace acdf::tools

@@ -18,7 +18,7 @@ ordered_json interval_json(const measure::Interval& interval) { // JSON has no i
     return {{"value", interval.value}, {"low", interval.low}, {"high", interval.high}};
 }
 
-/// Of a picture of so many samples, per cent; where numbers are not independent only with those that were drawn.
+/// Of a picture of so many samples, per cent; where numbers are not independent only with those that were sampled.
 ordered_json noise(const Compared& one, std::uint32_t samples) {
     if (one.scales) return noise_json(one.relative_variance.value * samples);
     return {{std::to_string(samples), 100.0 * std::sqrt(one.relative_variance.value)}};

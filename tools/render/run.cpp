@@ -117,20 +117,20 @@ const Compared* best_of(const std::vector<Compared>& samplers, bool ours, Gain g
 
 std::string judge(const Comparison& comparison, Gain gain, const char* where, const char* what) {
     const Compared* ours = best_of(comparison.samplers, true, gain);
-    const Compared* rival = best_of(comparison.samplers, false, gain);
-    if (!ours || !rival) {
-        const Compared* best = ours ? ours : rival;
+    const Compared* baseline = best_of(comparison.samplers, false, gain);
+    if (!ours || !baseline) {
+        const Compared* best = ours ? ours : baseline;
         if (!best) return std::string("At equal ") + where + " nothing can be said: rare, bright samples decide.";
         return std::string("At equal ") + where + " '" + best->spec.text + "' has the least noise.";
     }
-    const bool wins = gain(*ours, *rival).value >= 1.0;
-    const Compared& first = wins ? *ours : *rival;
-    const Compared& second = wins ? *rival : *ours;
+    const bool wins = gain(*ours, *baseline).value >= 1.0;
+    const Compared& first = wins ? *ours : *baseline;
+    const Compared& second = wins ? *baseline : *ours;
     const measure::Interval factor = gain(first, second);
-    std::string text = std::string("At equal ") + where + (wins ? " ours, '" : " a rival wins: '") +
+    std::string text = std::string("At equal ") + where + (wins ? " ours, '" : " a baseline wins: '") +
                        first.spec.text + "'" + (wins ? ", wins: " : ", ") + range_text(factor) + " times less " +
-                       what + " than " + (wins ? "the best rival, '" : "the best of ours, '") + second.spec.text +
-                       "'";
+                       what + " than " + (wins ? "the best baseline, '" : "the best of ours, '") +
+                       second.spec.text + "'";
     if (factor.low <= 1.0) text += "; within the noise of this run";
     return text + ".";
 }

@@ -3,7 +3,7 @@
 #include "build/brdf.h"
 #include "measure/samplers/estimators.h"
 #include "measure/samplers/light_samplers.h"
-#include "measure/samplers/product_rivals.h"
+#include "measure/samplers/product_baselines.h"
 #include "measure/samplers/product_samplers.h"
 #include "measure/samplers/product_warp.h"
 #include "measure/samplers/stratified_map.h"
@@ -11,7 +11,7 @@
 #include "measure/scenes/surface_points.h"
 #include "tools/cli/built.h"
 #include "tools/cli/file_input.h"
-#include "tools/cli/mesh_places.h"
+#include "tools/cli/mesh_visibility.h"
 #include "tools/commands.h"
 #include "tools/render/portals.h"
 
@@ -29,7 +29,7 @@ using measure::LightSamplerPtr;
 struct SamplerTable {
     std::shared_ptr<const void> keep;
     LightSamplerPtr sampler;
-    const File* file = nullptr; ///< that it draws from; null where there is none
+    const File* file = nullptr; ///< that it samples from; null where there is none
 };
 
 namespace {
@@ -53,7 +53,7 @@ Table env_table(const builder::Target& target, const SamplerSpec& spec,
                 const std::vector<builder::SceneNormal>& normals) {
     builder::EnvironmentOptions options;
     options.goal = builder::Goal::of_budget(spec.bytes);
-    options.company = spec.company;
+    options.mis = spec.mis;
     if (spec.of_scene) options.normals = normals;
     builder::Environment made;
     throw_unless_built(builder::environment(target, options, made));
@@ -65,7 +65,7 @@ Table local_table(const builder::Target& target, const SamplerSpec& spec,
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(spec.bytes);
     options.shape = spec.fast ? builder::LocalShape::fast : builder::LocalShape::small;
-    options.company = spec.company;
+    options.mis = spec.mis;
     if (spec.of_scene) options.normals = normals;
     builder::Local made;
     throw_unless_built(builder::local(target, options, made));
@@ -73,23 +73,23 @@ Table local_table(const builder::Target& target, const SamplerSpec& spec,
 }
 
 /// `portals`: those of the scene, too.
-Table places_table(const builder::Target& target, const measure::Geometry& geometry, std::uint64_t bytes,
-                   bool portals) {
+Table visibility_table(const builder::Target& target, const measure::Geometry& geometry, std::uint64_t bytes,
+                       bool portals) {
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(bytes);
-    const compress::PlaceScene scene = measure::place_scene(geometry);
-    if (geometry.turned) turn_from_y_up(options.places);
+    const compress::VisibilityScene scene = measure::visibility_scene(geometry);
+    if (geometry.turned) turn_from_y_up(options.visibility);
     for (std::size_t i = 0; portals && i < geometry.portals.size(); ++i)
-        options.places.portals.push_back(told_portal(options.places, geometry.portals[i]));
-    options.places.point = [&](std::uint64_t index, builder::PlacePoint& out) {
-        compress::PlacePoint point;
+        options.visibility.portals.push_back(portal_of(options.visibility, geometry.portals[i]));
+    options.visibility.point = [&](std::uint64_t index, builder::VisibilityPoint& out) {
+        compress::VisibilityPoint point;
         if (!scene.points(index, point)) return false;
         std::copy_n(point.position.begin(), 3, out.position);
         std::copy_n(point.normal.begin(), 3, out.normal);
         return true;
     };
-    options.places.occluded = [&](const builder::PlacePoint& from, const float direction[3]) {
-        compress::PlacePoint point;
+    options.visibility.occluded = [&](const builder::VisibilityPoint& from, const float direction[3]) {
+        compress::VisibilityPoint point;
         std::copy_n(from.position, 3, point.position.begin());
         std::copy_n(from.normal, 3, point.normal.begin());
         return scene.occluded(point, {direction[0], direction[1], direction[2]});
@@ -135,7 +135,7 @@ bool knows_brdf(const SamplerSpec& spec) {
 bool is_ours(const SamplerSpec& spec) {
     if (!spec.parts.empty()) return std::any_of(spec.parts.begin(), spec.parts.end(), is_ours);
     return spec.kind == SamplerKind::env || spec.kind == SamplerKind::local || spec.kind == SamplerKind::brdf ||
-           spec.kind == SamplerKind::places || spec.kind == SamplerKind::places_portals ||
+           spec.kind == SamplerKind::visibility || spec.kind == SamplerKind::visibility_portals ||
            spec.kind == SamplerKind::file || spec.kind == SamplerKind::product;
 }
 
@@ -168,7 +168,7 @@ struct SamplerBuilder::Store {
             return env_table(fitted, spec, normals);
         case SamplerKind::local:
             return local_table(fitted, spec, normals);
-        case SamplerKind::visibility:
+        case SamplerKind::visibility_cache:
             if (!points) fail_without_scene(spec);
             return {nullptr, measure::visibility_sampler(target, spec.columns, spec.rows, *points)};
         case SamplerKind::portals:
@@ -176,14 +176,13 @@ struct SamplerBuilder::Store {
             return {nullptr, spec.uniform ? measure::uniform_portal_sampler(geometry->portals, geometry->turned)
                                           : measure::windowed_portal_sampler(target, geometry->portals,
                                                                              geometry->turned, kPortalCells)};
-        case SamplerKind::places:
+        case SamplerKind::visibility:
             if (!geometry) fail_without_scene(spec);
-            return places_table(fitted, *geometry, spec.bytes, false);
-        case SamplerKind::places_portals:
+            return visibility_table(fitted, *geometry, spec.bytes, false);
+        case SamplerKind::visibility_portals:
             if (!geometry) fail_without_scene(spec);
-            if (geometry->portals.empty())
-                throw SpecError("sampler '" + spec.text + "': the scene tells no portals");
-            return places_table(fitted, *geometry, spec.bytes, true);
+            if (geometry->portals.empty()) throw SpecError("sampler '" + spec.text + "': the scene has no portals");
+            return visibility_table(fitted, *geometry, spec.bytes, true);
         case SamplerKind::brdf:
             return brdf_table(*brdfs[material], spec.bytes);
         case SamplerKind::brdf_table:
@@ -199,9 +198,9 @@ struct SamplerBuilder::Store {
         case SamplerKind::compensated:
             return {nullptr, measure::compensated_sampler(target)};
         case SamplerKind::ideal:
-            return {nullptr, measure::ideal_sampler(target, spec.company.kind == ACDF_COMPANY_NONE
+            return {nullptr, measure::ideal_sampler(target, spec.mis.kind == ACDF_PARTNER_NONE
                                                                 ? 0.0
-                                                                : spec.company.light / spec.company.other)};
+                                                                : spec.mis.light / spec.mis.other)};
         case SamplerKind::strata:
         case SamplerKind::mis:
         case SamplerKind::product:
@@ -240,8 +239,8 @@ struct SamplerBuilder::Store {
         const int parts = spec.divisions ? static_cast<int>(spec.divisions) : measure::product_parts(samples);
         const File* light = table(spec.parts[0], material).file;
         const File* brdf = table(spec.parts[1], material).file;
-        if (light->company())
-            throw SpecError("sampler '" + spec.text + "': its light has no support where its company is enough");
+        if (light->partner())
+            throw SpecError("sampler '" + spec.text + "': its light has no support where its partner is enough");
         const Table& made = kept(spec.text + "/" + std::to_string(parts), material, [&] {
             return brdf ? measure::product_sampler(*light, *brdf, parts)
                         : measure::product_sampler(*light, spec.parts[1].alpha, parts);
@@ -251,14 +250,14 @@ struct SamplerBuilder::Store {
     const measure::LightSampler& warp(const SamplerSpec& spec, std::size_t material) {
         const File* light = table(spec.parts[0], material).file;
         const File* brdf = table(spec.parts[1], material).file;
-        if (light->company())
-            throw SpecError("sampler '" + spec.text + "': its light has no support where its company is enough");
+        if (light->partner())
+            throw SpecError("sampler '" + spec.text + "': its light has no support where its partner is enough");
         return *kept(spec.text, material, [&] {
                     return brdf ? measure::product_warp_sampler(*light, *brdf)
                                 : measure::product_warp_sampler(*light, spec.parts[1].alpha);
                 }).sampler;
     }
-    /// One that single directions are drawn from, made for `samples` at a point.
+    /// One that single directions are sampled from, made for `samples` at a point.
     const measure::LightSampler& single(const SamplerSpec& spec, std::size_t material, std::uint32_t samples) {
         if (spec.kind == SamplerKind::product) return product(spec, material, samples);
         return spec.kind == SamplerKind::warp ? warp(spec, material) : sampler(spec, material);
@@ -282,8 +281,8 @@ struct SamplerBuilder::Store {
                                                                   samples);
         if (spec.kind == SamplerKind::strata)
             return std::make_unique<measure::StratifiedEstimator>(stratified(spec, samples));
-        if (spec.kind == SamplerKind::file && table(spec, material).file->company())
-            throw SpecError("sampler '" + spec.text + "': has no support where its company is enough: mis(" +
+        if (spec.kind == SamplerKind::file && table(spec, material).file->partner())
+            throw SpecError("sampler '" + spec.text + "': has no support where its partner is enough: mis(" +
                             spec.text + ", cosine)");
         if (spec.kind != SamplerKind::mis)
             return std::make_unique<measure::SingleEstimator>(single(spec, material, samples), samples);

@@ -25,7 +25,7 @@ struct BuiltSampler {
 class SamplerBuilder {
 public:
     /// `brdfs`: one a material, which are referred to and must outlive the builder, as `geometry` and `points`,
-    /// where there are such: places are those on the one, caches are made for the others. Files are relative to
+    /// where there are such: positions are those on the one, caches are made for the others. Files are relative to
     /// `data`. `normals`: those that the camera sees, for samplers that are made for them.
     SamplerBuilder(const builder::Target& target, std::vector<const input::Brdf*> brdfs, std::string data,
                    std::vector<builder::SceneNormal> normals = {}, const measure::Geometry* geometry = nullptr,
@@ -36,7 +36,7 @@ public:
 
     /// Valid as long as the builder. Throws SpecError, Failure or std::exception, which name the sampler.
     BuiltSampler build(const SamplerSpec& spec, std::uint32_t samples);
-    /// What one draws from that is no mis(...), ris or strata.
+    /// What one samples from that is no mis(...), ris or strata.
     const measure::LightSampler& single(const SamplerSpec& spec, std::size_t material, std::uint32_t samples);
 
 private:

@@ -1,6 +1,6 @@
 #include "tools/render/sampler_spec.h"
 
-#include "tools/cli/company_text.h"
+#include "tools/cli/mis_text.h"
 #include "tools/cli/sizes.h"
 
 #include <acdf/cut.h>
@@ -32,12 +32,12 @@ constexpr Name names[] = {
     {"full-cdf", SamplerKind::full_cdf, nullptr},
     {"cosine", SamplerKind::cosine, nullptr},
     {"tiles", SamplerKind::tiles, "32x16"},
-    {"visibility", SamplerKind::visibility, "32x16"},
+    {"visibility-cache", SamplerKind::visibility_cache, "32x16"},
     {"portals", SamplerKind::portals, "light"},
     {"env", SamplerKind::env, "64KiB"},
     {"local", SamplerKind::local, "1MB"},
-    {"places", SamplerKind::places, "4MB"},
-    {"places-portals", SamplerKind::places_portals, "4MB"},
+    {"visibility", SamplerKind::visibility, "4MB"},
+    {"visibility-portals", SamplerKind::visibility_portals, "4MB"},
     {"brdf", SamplerKind::brdf, "64KiB"},
     {"brdf-table", SamplerKind::brdf_table, "mean"},
     {"ggx", SamplerKind::ggx, "0.1"},
@@ -77,12 +77,12 @@ void read_argument(const std::string& argument, SamplerSpec& spec) {
     switch (spec.kind) {
     case SamplerKind::env:
     case SamplerKind::local:
-    case SamplerKind::places:
-    case SamplerKind::places_portals:
+    case SamplerKind::visibility:
+    case SamplerKind::visibility_portals:
     case SamplerKind::brdf:
         return read_size(argument, spec);
     case SamplerKind::tiles:
-    case SamplerKind::visibility:
+    case SamplerKind::visibility_cache:
     case SamplerKind::downsampled:
         return read_grid(argument, spec);
     case SamplerKind::portals:
@@ -128,8 +128,8 @@ std::string trimmed(const std::string& text) {
     return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-/// " --with cosine --shares 2:1 --heuristic power --scene --shape fast".
-void read_company(const std::string& options, SamplerSpec& spec) {
+/// " --mis cosine --shares 2:1 --heuristic power --scene --shape fast".
+void read_partner(const std::string& options, SamplerSpec& spec) {
     if (spec.kind != SamplerKind::env && spec.kind != SamplerKind::local && spec.kind != SamplerKind::ideal)
         fail(spec.text, "takes no options: env, local and ideal do");
     std::vector<std::string> words;
@@ -146,19 +146,19 @@ void read_company(const std::string& options, SamplerSpec& spec) {
             ++i;
             continue;
         }
-        const bool known = words[i] == "--with"        ? parse_company(value, spec.company)
-                           : words[i] == "--shares"    ? parse_shares(value, spec.company)
-                           : words[i] == "--heuristic" ? parse_heuristic(value, spec.company)
+        const bool known = words[i] == "--mis"         ? parse_partner(value, spec.mis)
+                           : words[i] == "--shares"    ? parse_shares(value, spec.mis)
+                           : words[i] == "--heuristic" ? parse_heuristic(value, spec.mis)
                                                        : false;
         if (!known)
-            fail(spec.text, "'" + words[i] + " " + value + "' is no option: --with cosine, --shares 2:1, " +
+            fail(spec.text, "'" + words[i] + " " + value + "' is no option: --mis cosine, --shares 2:1, " +
                                 "--heuristic power, --scene, or of local --shape fast");
         ++i;
     }
-    if (spec.kind == SamplerKind::ideal && spec.company.kind > ACDF_COMPANY_COSINE)
-        fail(spec.text, "knows --with cosine alone");
-    if (spec.kind == SamplerKind::local && spec.company.kind == ACDF_COMPANY_MEAN)
-        fail(spec.text, "--with mean is for env");
+    if (spec.kind == SamplerKind::ideal && spec.mis.kind > ACDF_PARTNER_COSINE)
+        fail(spec.text, "knows --mis cosine alone");
+    if (spec.kind == SamplerKind::local && spec.mis.kind == ACDF_PARTNER_MEAN)
+        fail(spec.text, "--mis mean is for env");
 }
 
 SamplerSpec parse_single(const std::string& whole) {
@@ -180,7 +180,7 @@ SamplerSpec parse_single(const std::string& whole) {
     if (colon != std::string::npos && !found->argument) fail(text, "takes no argument");
     if (found->argument)
         read_argument(colon == std::string::npos ? found->argument : plain.substr(colon + 1), spec);
-    if (option != std::string::npos) read_company(text.substr(option), spec);
+    if (option != std::string::npos) read_partner(text.substr(option), spec);
     return spec;
 }
 
@@ -209,16 +209,16 @@ SamplerSpec parse_made(const std::string& text, std::size_t open) {
     for (const std::string& part : split(text, text.substr(open + 1, text.size() - open - 2)))
         spec.parts.push_back(parse_single(part));
     for (const SamplerSpec& part : spec.parts)
-        if (part.company.kind != ACDF_COMPANY_NONE)
-            fail(text, "'" + part.text + "' has no support where its company is enough");
+        if (part.mis.kind != ACDF_PARTNER_NONE)
+            fail(text, "'" + part.text + "' has no support where its partner is enough");
     const std::size_t count = spec.parts.size();
     const SamplerSpec &first = spec.parts.front(), &last = spec.parts.back();
     switch (spec.kind) {
     case SamplerKind::product:
         if (count != 2 || !is_brdf(last) ||
-            (first.kind != SamplerKind::local && first.kind != SamplerKind::places &&
+            (first.kind != SamplerKind::local && first.kind != SamplerKind::visibility &&
              first.kind != SamplerKind::env && first.kind != SamplerKind::file))
-            fail(text, "is product(LIGHT,BRDF): of local:SIZE, places:SIZE, env:SIZE or a file, and brdf:SIZE, "
+            fail(text, "is product(LIGHT,BRDF): of local:SIZE, visibility:SIZE, env:SIZE or a file, and brdf:SIZE, "
                        "ggx:ALPHA or "
                        "a file");
         return spec;
@@ -299,8 +299,8 @@ SamplerSpec parse_sampler(const std::string& text) {
     SamplerSpec spec = parse_part(text);
     if (spec.kind == SamplerKind::compensated)
         fail(text, "has no support where little light is: mis(compensated,cosine), which is mis-compensated");
-    if (spec.company.kind != ACDF_COMPANY_NONE)
-        fail(text, "has no support where its company is enough: mis(" + text + ", cosine)");
+    if (spec.mis.kind != ACDF_PARTNER_NONE)
+        fail(text, "has no support where its partner is enough: mis(" + text + ", cosine)");
     return spec;
 }
 

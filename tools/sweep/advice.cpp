@@ -22,7 +22,7 @@ std::string interval_text(const Interval& i) {
     return short_number(i.value) + " (" + short_number(i.low) + " to " + short_number(i.high) + ")";
 }
 
-std::string spp_text(const Visibility& v) {
+std::string spp_text(const VisibleNoise& v) {
     return std::to_string(v.spp) + (v.spp == 1 ? " sample per pixel" : " samples per pixel");
 }
 
@@ -36,7 +36,7 @@ bool tried_larger(const Sweep& sweep, const SweepRow& best) {
 
 std::string sentence_of(const Sweep& sweep, const Recommended& recommended) {
     const SweepRow& best = sweep.rows[recommended.row];
-    const Visibility& v = sweep.visibility;
+    const VisibleNoise& v = sweep.visible;
     const std::string size = to_readable_size(best.bytes);
     const double variance = variance_in(best, open_alone, sweep.numbers);
     std::string has = "a relative variance of " + short_number(variance) + ", " + noise_text(variance, v.spp) +
@@ -51,8 +51,8 @@ std::string sentence_of(const Sweep& sweep, const Recommended& recommended) {
 
 /// Of files that know no surface: what pictures have of them.
 std::string picture_sentence(const Sweep& sweep, const Recommended& recommended) {
-    const SweepRow &best = sweep.rows[recommended.row], &full = sweep.rows[sweep.baseline];
-    const Visibility& v = sweep.visibility;
+    const SweepRow &best = sweep.rows[recommended.row], &full = sweep.rows[sweep.reference];
+    const VisibleNoise& v = sweep.visible;
     const auto noise = [&](const SweepRow& row) {
         return noise_text(variance_in(row, open_alone, sweep.numbers), v.spp);
     };
@@ -63,7 +63,7 @@ std::string picture_sentence(const Sweep& sweep, const Recommended& recommended)
 }
 
 std::string picture_rule(const Sweep& sweep) {
-    const Visibility& v = sweep.visibility;
+    const VisibleNoise& v = sweep.visible;
     std::string text =
         "Rule: the smallest file tried, or one of up to a quarter more bytes with less noise, whose noise on a "
         "diffuse surface is at most 5 % above the least of "
@@ -72,14 +72,14 @@ std::string picture_rule(const Sweep& sweep) {
         ", in each of four situations: nothing hidden and behind the sphere and the wall of the demo "
         "scene, with samples of the light alone and with half of them the surface's own. ";
     text += sweep.timed ? "Noise is that after the same time, of which a sample takes " +
-                              short_number(sweep.costs.shadow_ray_ns) + " ns beside its drawing (--shadow-ray-ns)."
+                              short_number(sweep.costs.shadow_ray_ns) + " ns beside its sampling (--shadow-ray-ns)."
                         : "Noise is that after the same samples: nothing was timed.";
     if (sweep.numbers == measure::Numbers::sobol) text += " Samples are of a scrambled Sobol' sequence.";
     return text;
 }
 
 std::string rule_of(const Sweep& sweep) {
-    const Visibility& v = sweep.visibility;
+    const VisibleNoise& v = sweep.visible;
     std::string text =
         "Rule: the smallest file tried whose noise, the standard deviation sqrt(relative variance / " +
         std::to_string(v.spp) + ") of a pixel, is at most " + percent(v.threshold) + " of its value";
@@ -90,22 +90,22 @@ std::string rule_of(const Sweep& sweep) {
     return text;
 }
 
-RivalComparison compare(const Sweep& sweep, std::size_t index, const SweepRow& best) {
-    const SweepRow& rival = sweep.rows[index];
-    RivalComparison out;
+BaselineComparison compare(const Sweep& sweep, std::size_t index, const SweepRow& best) {
+    const SweepRow& baseline = sweep.rows[index];
+    BaselineComparison out;
     out.row = index;
-    out.bytes = static_cast<double>(rival.bytes) / static_cast<double>(best.bytes);
-    out.variance = rival.shaded() / best.shaded();
-    out.time = ratio_interval(rival.times.sample, best.times.sample);
-    if (std::isinf(rival.shaded())) {
+    out.bytes = static_cast<double>(baseline.bytes) / static_cast<double>(best.bytes);
+    out.variance = baseline.shaded() / best.shaded();
+    out.time = ratio_interval(baseline.times.sample, best.times.sample);
+    if (std::isinf(baseline.shaded())) {
         out.verdict = Verdict::ours; // biased, however fast
         return out;
     }
-    const Interval cost = cost_ratio(rival, best, open_alone, sweep.costs);
+    const Interval cost = cost_ratio(baseline, best, open_alone, sweep.costs);
     if (!cost.known() || !(best.shaded() > 0.0)) return out;
     out.equal_time = {cost.value * out.variance, cost.low * out.variance, cost.high * out.variance};
     out.verdict = out.equal_time.low > 1.0    ? Verdict::ours
-                  : out.equal_time.high < 1.0 ? Verdict::rival
+                  : out.equal_time.high < 1.0 ? Verdict::baseline
                                               : Verdict::even;
     return out;
 }
@@ -113,10 +113,10 @@ RivalComparison compare(const Sweep& sweep, std::size_t index, const SweepRow& b
 /// Those with a verdict, each with its variance at equal time: "alias table 1.3 (1.2 to 1.4); ...".
 std::string named(const Sweep& sweep, const Advice& advice, Verdict verdict) {
     std::string names;
-    for (const RivalComparison& c : advice.comparisons) {
+    for (const BaselineComparison& c : advice.comparisons) {
         if (c.verdict != verdict || !c.equal_time.known()) continue;
         names += (names.empty() ? "" : "; ") + sweep.rows[c.row].label + " " + interval_text(c.equal_time);
-        if (verdict == Verdict::rival && c.bytes > 1.0)
+        if (verdict == Verdict::baseline && c.bytes > 1.0)
             names += " with " + short_number(c.bytes) + " times the memory";
     }
     return names;
@@ -124,16 +124,16 @@ std::string named(const Sweep& sweep, const Advice& advice, Verdict verdict) {
 
 /// Who wins at equal time; a sentence for each way it can end.
 void add_time_findings(const Sweep& sweep, Advice& advice, const SweepRow& best) {
-    const std::string than = " Figures are the rival's variance over that of the " + to_readable_size(best.bytes) +
-                             " file after the same time, of which a sample takes " +
-                             short_number(sweep.costs.shadow_ray_ns) + " ns beside its drawing.";
-    const std::string rivals = named(sweep, advice, Verdict::rival), even = named(sweep, advice, Verdict::even),
-                      ours = named(sweep, advice, Verdict::ours);
-    if (!rivals.empty()) advice.findings.push_back("At equal time a rival wins: " + rivals + "." + than);
-    else if (!even.empty() || !ours.empty()) advice.findings.push_back("At equal time no rival wins." + than);
+    const std::string than = " Figures are the baseline's variance over that of the " +
+                             to_readable_size(best.bytes) + " file after the same time, of which a sample takes " +
+                             short_number(sweep.costs.shadow_ray_ns) + " ns beside its sampling.";
+    const std::string baselines = named(sweep, advice, Verdict::baseline),
+                      even = named(sweep, advice, Verdict::even), ours = named(sweep, advice, Verdict::ours);
+    if (!baselines.empty()) advice.findings.push_back("At equal time a baseline wins: " + baselines + "." + than);
+    else if (!even.empty() || !ours.empty()) advice.findings.push_back("At equal time no baseline wins." + than);
     if (!even.empty()) advice.findings.push_back("Too close to call at equal time: " + even + ".");
     if (!ours.empty()) advice.findings.push_back("At equal time the file wins against: " + ours + ".");
-    for (const RivalComparison& c : advice.comparisons)
+    for (const BaselineComparison& c : advice.comparisons)
         if (std::isinf(sweep.rows[c.row].shaded()))
             advice.findings.push_back(capital(sweep.rows[c.row].label) +
                                       " is biased by itself: it has no density where there is light.");
@@ -145,12 +145,12 @@ std::string sample_finding(const Sweep& sweep, const SweepRow& best) {
     const std::string of =
         sweep.kind == SweepKind::environment ? "than this file on the light itself" : "than this file";
     std::string names;
-    for (const SweepRow& rival : sweep.rows)
-        if (!rival.ours() && rival.relative_variance < best.relative_variance)
-            names += (names.empty() ? "" : "; ") + rival.label + " (" + short_number(rival.relative_variance) +
-                     ", " + to_readable_size(rival.bytes) + ")";
+    for (const SweepRow& baseline : sweep.rows)
+        if (!baseline.ours() && baseline.relative_variance < best.relative_variance)
+            names += (names.empty() ? "" : "; ") + baseline.label + " (" +
+                     short_number(baseline.relative_variance) + ", " + to_readable_size(baseline.bytes) + ")";
     if (names.empty())
-        return "Sample for sample no rival is less noisy " + of + " (relative variance " +
+        return "Sample for sample no baseline is less noisy " + of + " (relative variance " +
                short_number(best.relative_variance) + ").";
     return "Sample for sample these are less noisy " + of + " (relative variance " +
            short_number(best.relative_variance) + "): " + names + ".";
@@ -159,13 +159,13 @@ std::string sample_finding(const Sweep& sweep, const SweepRow& best) {
 /// Another file of acdf's that is not visibly noisy either, and better at equal time.
 void add_own_finding(const Sweep& sweep, Advice& advice) {
     const SweepRow& best = sweep.rows[advice.recommended.row];
-    RivalComparison fastest;
+    BaselineComparison fastest;
     for (std::size_t i = 0; i < sweep.rows.size(); ++i) {
         const SweepRow& row = sweep.rows[i];
-        if (!row.ours() || !(row.relative_variance <= sweep.visibility.largest_variance())) continue;
-        const RivalComparison c = compare(sweep, i, best);
+        if (!row.ours() || !(row.relative_variance <= sweep.visible.largest_variance())) continue;
+        const BaselineComparison c = compare(sweep, i, best);
         const bool better = !fastest.equal_time.known() || c.equal_time.value < fastest.equal_time.value;
-        if (c.verdict == Verdict::rival && better) fastest = c;
+        if (c.verdict == Verdict::baseline && better) fastest = c;
     }
     if (!fastest.equal_time.known()) return;
     const SweepRow& row = sweep.rows[fastest.row];
@@ -188,8 +188,8 @@ void add_findings(const Sweep& sweep, Advice& advice) {
         advice.findings.push_back(
             "All of this is under light that is the same from everywhere. Under other light mix with samples of "
             "the "
-            "light, by the exact densities that each file tells; `acdf render` shows it on scenes.");
-    else if (sweep.kind == SweepKind::places)
+            "light, by the exact densities that each file stores; `acdf render` shows it on scenes.");
+    else if (sweep.kind == SweepKind::visibility)
         advice.findings.push_back(
             "All of this is on the scene as the file knows it, matte, with points all over it: `acdf render` shows "
             "what a camera sees, with portals and caches of visibility, too. Where the scene moves, the file stays "
@@ -198,7 +198,7 @@ void add_findings(const Sweep& sweep, Advice& advice) {
         advice.findings.push_back(
             "All of this is without occluders. Where what is brightest is hidden, samplers that follow the light "
             "closely lose most of their lead over a plain CDF: mix with cosine or BRDF samples there, by the exact "
-            "densities that each file tells; `acdf render` shows it on scenes.");
+            "densities that each file stores; `acdf render` shows it on scenes.");
 }
 
 } // namespace
@@ -225,7 +225,7 @@ std::string shell_word(const std::string& word) {
 
 Advice advise(const Sweep& sweep) {
     Advice out;
-    out.recommended = recommended_row(sweep.rows, sweep.visibility, sweep.costs, sweep.numbers);
+    out.recommended = recommended_row(sweep.rows, sweep.visible, sweep.costs, sweep.numbers);
     const SweepRow& best = sweep.rows[out.recommended.row];
     out.situations = situations_of(sweep, best);
     const bool pictures = !out.situations.empty();

@@ -11,13 +11,13 @@
 
 namespace acdf::tools {
 
-enum class Verdict { ours, rival, even, unknown };
+enum class Verdict { ours, baseline, even, unknown };
 
-/// A rival beside the recommended file. Ratios are the rival's over the file's.
-struct RivalComparison {
-    std::size_t row = 0; ///< the rival
+/// A baseline beside the recommended file. Ratios are the baseline's over the file's.
+struct BaselineComparison {
+    std::size_t row = 0; ///< the baseline
     double bytes = kUnknown, variance = kUnknown;
-    Interval time, equal_time;          ///< of drawing a sample; of the variance after the same time
+    Interval time, equal_time;          ///< of sampling a sample; of the variance after the same time
     Verdict verdict = Verdict::unknown; ///< at equal time; even: the interval holds 1
 };
 
@@ -27,8 +27,8 @@ struct Advice {
     std::string rule;                        ///< by which it was chosen
     std::string command;                     ///< exactly what makes the file
     std::vector<SituationAdvice> situations; ///< environment
-    std::vector<RivalComparison> comparisons;
-    std::vector<std::string> findings; ///< where rivals win and where they do not; a sentence each
+    std::vector<BaselineComparison> comparisons;
+    std::vector<std::string> findings; ///< where baselines win and where they do not; a sentence each
 };
 
 Advice advise(const Sweep& sweep);

@@ -12,7 +12,7 @@
 #include "tools/plot/knots.h"
 #include "tools/sweep/advice.h"
 #include "tools/sweep/build.h"
-#include "tools/sweep/pixel_draws.h"
+#include "tools/sweep/pixel_samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,14 +102,14 @@ measure::ShadingPoint point_of(const compress::View& view) {
         {0.0f, 0.0f, 1.0f}, {static_cast<float>(wo[0]), static_cast<float>(wo[1]), static_cast<float>(wo[2])}, {}};
 }
 
-/// `points`: the views over which rivals are measured.
-std::vector<Candidate> rivals(const input::Brdf& brdf, const compress::Reflected& reflected, std::uint32_t count,
-                              std::vector<DrawnPoint>& points) {
+/// `points`: the views over which baselines are measured.
+std::vector<Candidate> baselines(const input::Brdf& brdf, const compress::Reflected& reflected, std::uint32_t count,
+                                 std::vector<SampledPoint>& points) {
     const std::vector<compress::View> views = build::random_views(count, brdf.isotropic);
     std::vector<Candidate> out;
     const auto add = [&](const char* system, const std::string& label,
-                         std::shared_ptr<const measure::LightSampler> sampler, const build::ViewDensity& density) {
-        out.push_back(rival_candidate(system, label, std::move(sampler)));
+                         std::shared_ptr<const measure::LightSampler> sampler, const build::ViewPdf& density) {
+        out.push_back(baseline_candidate(system, label, std::move(sampler)));
         // The same sums as of files.
         auto measured = build::measure_views(density, reflected, views);
         if (points.empty())
@@ -147,7 +147,7 @@ void add_pictures(Sweep& sweep, const compress::Reflected& reflected, const std:
     PlottedView{candidates.front().file->file.brdf(), angles}.direction(view);
     const double wo[3] = {view[0], view[1], view[2]};
     const double x = std::sqrt(1.0 - wo[2]);
-    const build::ViewDensity uniform = [](const double*, const double*) { return 0.5 / ACDF_PI; };
+    const build::ViewPdf uniform = [](const double*, const double*) { return 0.5 / ACDF_PI; };
     const double albedo = build::measure_views(uniform, reflected, {{x, 0.0}}).front().albedo;
     const Density own = [&](const float wi[3]) {
         const double w[3] = {wi[0], wi[1], wi[2]};
@@ -163,25 +163,24 @@ void add_pictures(Sweep& sweep, const compress::Reflected& reflected, const std:
     for (std::size_t i : pictured(candidates, sweep)) {
         const PlottedView plotted{candidates[i].file->file.brdf(), angles};
         add_picture(
-            sweep, draw_density(map, density_of(plotted)), knot_opacity(plotted, map), {},
+            sweep, draw_density(map, pdf_of(plotted)), knot_opacity(plotted, map), {},
             picture_title(candidates[i].row),
             "The density that this file has for the same view, in the same colours, with the borders of its "
             "cells.");
     }
 }
 
-/// Files and rivals with a renderer's points.
-void add_sobol(const compress::Reflected& reflected, const std::vector<DrawnPoint>& points,
+/// Files and baselines with a renderer's points.
+void add_sobol(const compress::Reflected& reflected, const std::vector<SampledPoint>& points,
                const SweepOptions& options, std::vector<Candidate>& candidates) {
-    const DrawnIntegrand integrand = [&](std::size_t i, const float wi[3]) {
+    const SampledIntegrand integrand = [&](std::size_t i, const float wi[3]) {
         const float* o = points[i].shading.wo;
         const double wo[3] = {o[0], o[1], o[2]}, light[3] = {wi[0], wi[1], wi[2]};
         return light[2] > 0.0 ? reflected(wo, light) : 0.0;
     };
     for (Candidate& each : candidates)
         if (std::isfinite(each.row.relative_variance))
-            each.row.sobol =
-                sobol_variance(*each.sampler, points, integrand, options.visibility.spp, options.seeds);
+            each.row.sobol = sobol_variance(*each.sampler, points, integrand, options.visible.spp, options.seeds);
 }
 
 } // namespace
@@ -199,12 +198,13 @@ Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const bui
     build_all(
         sweep, candidates, steps_of(sweep.kind, options),
         [&](const Step& step) { return make_file(brdf, options, step); }, part(0.0, 0.7));
-    part(0.7, 0.0)(0.0, "measuring rivals");
-    sweep.baseline = candidates.size();
-    std::vector<DrawnPoint> drawn;
-    for (Candidate& rival : rivals(brdf, reflected, options.views, drawn)) candidates.push_back(std::move(rival));
+    part(0.7, 0.0)(0.0, "measuring baselines");
+    sweep.reference = candidates.size();
+    std::vector<SampledPoint> sampled;
+    for (Candidate& baseline : baselines(brdf, reflected, options.views, sampled))
+        candidates.push_back(std::move(baseline));
     part(0.8, 0.0)(0.0, "drawing");
-    add_sobol(reflected, drawn, options, candidates);
+    add_sobol(reflected, sampled, options, candidates);
     if (options.pictures) add_pictures(sweep, reflected, candidates);
     std::vector<ShadingPoint> points;
     for (const compress::View& view : build::random_views(4096, false)) points.push_back(point_of(view));

@@ -17,15 +17,15 @@
 namespace acdf::tools {
 
 const char* to_string(SweepKind kind) {
-    constexpr const char* names[] = {"env", "local", "places", "brdf"};
+    constexpr const char* names[] = {"env", "local", "visibility", "brdf"};
     return names[static_cast<std::size_t>(kind)];
 }
 
 const std::vector<std::string>& fits_of(SweepKind kind) {
     static const std::vector<std::string> environment{"variance", "cdf", "pdf", "uniform"},
-        local{"variance", "fast", "separate", "cdf"}, places{"places", "variance"},
+        local{"variance", "fast", "separate", "cdf"}, visibility{"visibility", "variance"},
         brdf{"variance", "separate", "cdf", "uniform"};
-    const std::vector<std::string>* const fits[] = {&environment, &local, &places, &brdf};
+    const std::vector<std::string>* const fits[] = {&environment, &local, &visibility, &brdf};
     return *fits[static_cast<std::size_t>(kind)];
 }
 
@@ -39,7 +39,7 @@ std::vector<std::uint64_t> default_budgets(SweepKind kind) {
         return {4096, 16384, 65536, 262144, 1000000};
     case SweepKind::local:
         return {16384, 65536, 262144, 1000000, 4000000};
-    case SweepKind::places:
+    case SweepKind::visibility:
         return {1000000, 4000000};
     default:
         return {4096, 16384, 65536, 262144};
@@ -58,8 +58,8 @@ Candidate file_candidate(std::vector<std::uint8_t> bytes) {
     return out;
 }
 
-Candidate rival_candidate(std::string system, std::string label,
-                          std::shared_ptr<const measure::LightSampler> sampler) {
+Candidate baseline_candidate(std::string system, std::string label,
+                             std::shared_ptr<const measure::LightSampler> sampler) {
     Candidate out;
     out.row.system = std::move(system);
     out.row.label = std::move(label);
@@ -81,7 +81,7 @@ std::vector<Step> steps_of(SweepKind kind, const SweepOptions& options) {
 }
 
 void take_options(Sweep& sweep, const SweepOptions& options) {
-    sweep.visibility = options.visibility;
+    sweep.visible = options.visible;
     sweep.timed = options.timing;
     sweep.costs.shadow_ray_ns = options.shadow_ray_ns;
     sweep.numbers = options.numbers;
@@ -119,8 +119,8 @@ void finish_rows(Sweep& sweep, std::vector<Candidate> candidates, const std::vec
         std::vector<Timed> samplers;
         for (const Candidate& candidate : candidates)
             samplers.push_back({candidate.sampler.get(), candidate.has_pdf});
-        const auto company = measure::cosine_sampler();
-        samplers.push_back({company.get(), true});
+        const auto partner = measure::cosine_sampler();
+        samplers.push_back({partner.get(), true});
         std::vector<SweepTimes> times = time_samplers(samplers, points, options.rounds, progress);
         sweep.costs.cosine_ns =
             median_interval(times.back().sample).value + median_interval(times.back().pdf).value;
@@ -153,7 +153,7 @@ std::vector<std::size_t> pictured(const std::vector<Candidate>& candidates, cons
         rows.push_back(candidate.row);
         rows.back().times = {};
     }
-    const std::size_t best = recommended_row(rows, sweep.visibility, sweep.costs, sweep.numbers).row;
+    const std::size_t best = recommended_row(rows, sweep.visible, sweep.costs, sweep.numbers).row;
     std::size_t smallest = best, paper = rows.size();
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (!rows[i].ours()) continue;

@@ -24,7 +24,7 @@ struct StoredFile {
     File file;
 };
 
-/// A row on its way: with what draws its samples.
+/// A row on its way: with what samples its samples.
 struct Candidate {
     SweepRow row;
     std::shared_ptr<const measure::LightSampler> sampler;
@@ -36,8 +36,8 @@ struct Candidate {
 /// With the file's sampler and size.
 Candidate file_candidate(std::vector<std::uint8_t> bytes);
 /// With the sampler's size.
-Candidate rival_candidate(std::string system, std::string label,
-                          std::shared_ptr<const measure::LightSampler> sampler);
+Candidate baseline_candidate(std::string system, std::string label,
+                             std::shared_ptr<const measure::LightSampler> sampler);
 
 /// One file to be made: a fit at a size.
 struct Step {

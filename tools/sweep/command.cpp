@@ -5,7 +5,7 @@
 #include "tools/cli/choice.h"
 #include "tools/cli/comma_list.h"
 #include "tools/cli/help.h"
-#include "tools/cli/mesh_places.h"
+#include "tools/cli/mesh_visibility.h"
 #include "tools/cli/messages.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
@@ -42,7 +42,7 @@ struct SweepArguments {
     std::vector<std::string> budgets;
     input::ProbeOptions input;
     SweepOptions sweep;
-    SceneOption scene; ///< of places
+    SceneOption scene; ///< of visibility
     const CLI::App* command = nullptr;
     int threads = 0;
     bool no_timing = false, json = false, quiet = false, force = false;
@@ -79,26 +79,26 @@ void check_options(SweepArguments& options, SweepKind kind) {
     if (kind == SweepKind::brdf)
         for (const char* option : {"--projection", "--domain", "--filter", "--bad-pixels", "--on-black"})
             if (options.given(option)) throw CLI::ValidationError(option, "is for environment maps");
-    if ((kind == SweepKind::places) != options.scene.given())
-        throw CLI::ValidationError("--scene", "is for --kind places, and that needs one");
-    if (kind == SweepKind::places && options.input.domain == input::Domain::octahedral)
+    if ((kind == SweepKind::visibility) != options.scene.given())
+        throw CLI::ValidationError("--scene", "is for --kind visibility, and that needs one");
+    if (kind == SweepKind::visibility && options.input.domain == input::Domain::octahedral)
         throw CLI::ValidationError("--domain",
-                                   "is latlong with --kind places: points of a mesh see lat-long texels");
+                                   "is latlong with --kind visibility: points of a mesh see lat-long texels");
     options.scene.check(*options.command);
     const builder::TargetOptions& target = options.sweep.target;
     if (kind != SweepKind::brdf && target.filter != ACDF_FILTER_NEAREST)
-        throw CLI::ValidationError("--filter", "is nearest in a sweep: that is what the rivals are defined for");
+        throw CLI::ValidationError("--filter", "is nearest in a sweep: that is what the baselines are defined for");
     if (kind != SweepKind::brdf && target.channels.mode == ACDF_CHANNELS_SEPARATE)
         throw CLI::ValidationError("--channel",
-                                   "is one channel in a sweep of probes: the rivals are defined for one");
+                                   "is one channel in a sweep of probes: the baselines are defined for one");
     options.sweep.timing = !options.no_timing;
-    options.sweep.visibility.threshold /= 100.0; // it is given in per cent
+    options.sweep.visible.threshold /= 100.0; // it is given in per cent
 }
 
 /// What has to be said again to the subcommand that makes a file; `on_latlong_grid`: that grid, which the probe has
 /// not.
 std::string command_of(const SweepArguments& options, SweepKind kind, bool on_latlong_grid) {
-    const char* subcommand = kind == SweepKind::places ? "local" : to_string(kind);
+    const char* subcommand = kind == SweepKind::visibility ? "local" : to_string(kind);
     std::string text = std::string("acdf ") + subcommand + " " + shell_word(options.source);
     const auto add = [&](const char* option, const std::string& value) {
         if (options.given(option)) text += std::string(" ") + option + " " + value;
@@ -124,13 +124,15 @@ std::string output_of(const std::string& source, SweepKind kind) {
     std::error_code ignored;
     const std::string stem =
         fs::exists(source, ignored) ? fs::path(source).stem().string() : source.substr(0, source.find(':'));
-    return stem + (kind == SweepKind::local ? ".local.acdf" : kind == SweepKind::places ? ".places.acdf" : ".acdf");
+    return stem + (kind == SweepKind::local        ? ".local.acdf"
+                   : kind == SweepKind::visibility ? ".visibility.acdf"
+                                                   : ".acdf");
 }
 
 /// What files are made of, as the subcommand does that makes one; points of meshes see lat-long texels.
 ProbeTarget sweep_target(const SweepArguments& options, SweepKind kind) {
     input::ProbeOptions input = options.input;
-    if (kind == SweepKind::places) input.domain = input::Domain::latlong;
+    if (kind == SweepKind::visibility) input.domain = input::Domain::latlong;
     return load_target(options.source, input, options.sweep.target, notes_of(options.source, options.quiet));
 }
 
@@ -143,8 +145,8 @@ SweptMesh swept_mesh(const SweepArguments& options) {
     out.normals = both_sides(options.scene.read(note));
     out.surface = read_surface(options.scene, note);
     out.turned = up == input::UpAxis::y;
-    out.places = places_on(out.surface, up);
-    out.text = options.scene.text() + " --places";
+    out.visibility = visibility_on(out.surface, up);
+    out.text = options.scene.text() + " --visibility";
     for (const std::string& path : options.scene.paths)
         out.options += (out.options.empty() ? "--scene " : " --scene ") + shell_word(path);
     if (out.turned) out.options += " --scene-up y";
@@ -157,11 +159,11 @@ Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress
     const builder::Target& target = swept.target;
     const builder::Source source = source_of(probe, options.input);
     const bool square = builder::grid_of(target).parameterization == ACDF_PARAM_OCTAHEDRAL;
-    Sweep sweep = kind == SweepKind::places
-                      ? sweep_places(target, source, swept_mesh(options), options.sweep, progress)
+    Sweep sweep = kind == SweepKind::visibility
+                      ? sweep_visibility(target, source, swept_mesh(options), options.sweep, progress)
                   : kind == SweepKind::local ? sweep_local(target, source, options.sweep, progress)
                                              : sweep_environment(target, source, options.sweep, progress);
-    sweep.command = command_of(options, kind, kind == SweepKind::places && swept.resampled);
+    sweep.command = command_of(options, kind, kind == SweepKind::visibility && swept.resampled);
     sweep.description =
         std::to_string(probe.width) + " x " + std::to_string(probe.height) + (square ? " octahedral" : " lat-long");
     if (!swept.resampled) return sweep;
@@ -171,7 +173,7 @@ Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress
     std::snprintf(
         least, sizeof least,
         "the probe was resampled: no density that is constant on %d x %d texels has less than %.3g, of the light "
-        "itself; points and rivals take these texels for what is looked up",
+        "itself; points and baselines take these texels for what is looked up",
         probe.width, probe.height, compress::least_second_moment(builder::grid_of(target)) - 1.0);
     sweep.notes.push_back(least);
     return sweep;
@@ -231,38 +233,40 @@ void run(SweepArguments& options) {
 void add_sweep_options(CLI::App& command, SweepArguments& options) {
     constexpr Named<SweepKind> kinds[] = {{"env", SweepKind::environment},
                                           {"local", SweepKind::local},
-                                          {"places", SweepKind::places},
+                                          {"visibility", SweepKind::visibility},
                                           {"brdf", SweepKind::brdf}};
     add_choice(
         command, "--kind", [&options](SweepKind kind) { options.kind = kind; }, kinds,
-        "Which files are compared: env, local (for every normal), places (of a scene: acdf local --places) or "
+        "Which files are compared: env, local (for every normal), visibility (of a scene: acdf local --visibility) "
+        "or "
         "brdf")
         ->option_text("NAME [by the source: env or brdf]")
         ->group("Sweep");
-    options.scene.add(command, "For --kind places: the mesh (.obj, .ply, .instances) whose places are told apart",
+    options.scene.add(command,
+                      "For --kind visibility: the mesh (.obj, .ply, .instances) whose there are visibility cells",
                       "Sweep");
     comma_separated(command.add_option("--budgets", options.budgets, "Sizes to try, separated by commas"))
         ->option_text("SIZES [4KiB,16KiB,64KiB,256KiB,1MB for env]")
         ->group("Sweep");
-    comma_separated(
-        command.add_option(
-            "--fits", options.sweep.fits,
-            "Fits to try, separated by commas. env: variance, cdf, pdf, uniform; local: variance, fast "
-            "(--shape fast), separate (a tree for each normal), cdf (the paper's); places: places, variance (by "
-            "normals "
-            "alone); brdf: variance, separate, cdf, uniform"))
+    comma_separated(command.add_option(
+                        "--fits", options.sweep.fits,
+                        "Fits to try, separated by commas. env: variance, cdf, pdf, uniform; local: variance, fast "
+                        "(--shape fast), separate (a tree for each normal), cdf (the paper's); visibility: "
+                        "visibility, variance (by "
+                        "normals "
+                        "alone); brdf: variance, separate, cdf, uniform"))
         ->option_text("NAMES [all of the kind; local: variance,fast,cdf]")
         ->group("Sweep");
     command
-        .add_option("--spp", options.sweep.visibility.spp,
+        .add_option("--spp", options.sweep.visible.spp,
                     "Samples per pixel of your renderings: the more, the smaller a file is enough")
         ->check(CLI::Range(1u, 1u << 24))
         ->option_text("N [64]")
         ->group("Sweep");
-    options.sweep.visibility.threshold = 1.0;
+    options.sweep.visible.threshold = 1.0;
     command
         .add_option(
-            "--visible", options.sweep.visibility.threshold,
+            "--visible", options.sweep.visible.threshold,
             "Noise in per cent of a pixel's value that is still too small to see: 1 is about half a step of "
             "8-bit sRGB at middle grey")
         ->check(number_range(0.001, 100.0))
@@ -282,7 +286,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
         ->group("Sweep");
     command
         .add_option("--shadow-ray-ns", options.sweep.shadow_ray_ns,
-                    "Nanoseconds that a sample costs in your renderer beside its drawing: a shadow ray, a BRDF")
+                    "Nanoseconds that a sample costs in your renderer beside its sampling: a shadow ray, a BRDF")
         ->check(number_range(0.0, 1e9))
         ->option_text("X [500]")
         ->group("Sweep");
@@ -297,7 +301,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
 void add_sweep(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<SweepArguments>();
     CLI::App& command = *program.add_subcommand(
-        "sweep", "Which size and fit: noise, time and rivals on your probe or BRDF, as a table and a page");
+        "sweep", "Which size and fit: noise, time and baselines on your probe or BRDF, as a table and a page");
     options->command = &command;
     command
         .add_option(
@@ -313,10 +317,10 @@ void add_sweep(CLI::App& program, int& exit_code) {
     add_sweep_options(command, *options);
     add_target_options(command, options->sweep.target);
     command.get_option("--filter")
-        ->description("How your renderer looks the map up: nearest, which rivals are defined "
+        ->description("How your renderer looks the map up: nearest, which baselines are defined "
                       "for; a file for bilinear is measured by acdf env and acdf local");
     CLI::Option& channel = *command.get_option("--channel");
-    channel.description(channel.get_description() + ". Rivals of probes are defined for one channel: not rgb");
+    channel.description(channel.get_description() + ". Baselines of probes are defined for one channel: not rgb");
     command.add_option("-o,--output", options->folder, "The folder to write to; made where it does not exist")
         ->required()
         ->type_name("DIR")
@@ -330,12 +334,12 @@ void add_sweep(CLI::App& program, int& exit_code) {
     add_quiet(command, options->quiet);
     command.footer(help_footer(
         "Writes report.html, one page without network or scripts: plots, pictures, what to choose and the command "
-        "that makes it, and where a rival is better. sweep.csv and sweep.json have the same numbers. All files "
+        "that makes it, and where a baseline is better. sweep.csv and sweep.json have the same numbers. All files "
         "that "
         "are compared are made in memory.",
         "acdf sweep probe.exr -o out\n"
         "acdf sweep probe.exr -o out --kind local --budgets 64KiB,256KiB,1MB\n"
-        "acdf sweep probe.exr -o out --kind places --scene room.obj --budgets 1MB,4MB\n"
+        "acdf sweep probe.exr -o out --kind visibility --scene room.obj --budgets 1MB,4MB\n"
         "acdf sweep nickel.binary -o out --spp 16\n"
         "acdf sweep ggx:alpha=0.1 -o out --fits variance,cdf --no-timing"));
     command.callback([options, &exit_code] {

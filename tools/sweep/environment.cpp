@@ -5,11 +5,11 @@
 #include "tools/cli/built.h"
 #include "tools/plot/density.h"
 #include "tools/plot/knots.h"
+#include "tools/sweep/baselines.h"
 #include "tools/sweep/build.h"
 #include "tools/sweep/occluders.h"
-#include "tools/sweep/rivals.h"
 #include "tools/sweep/surface.h"
-#include "tools/sweep/surface_draws.h"
+#include "tools/sweep/surface_samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,31 +60,31 @@ Candidate make_file(const builder::Target& target, const builder::Source& source
 
 void add_pictures(Sweep& sweep, const compress::Target& target, const std::vector<Candidate>& candidates) {
     const build::Map map = plot_map(build::Layout::latlong, kPictureWidth);
-    const DensityImage full = draw_density(map, density_of(target));
+    const DensityImage full = draw_density(map, pdf_of(target));
     sweep.range = automatic_range(full);
     add_colour_bar(sweep);
     add_picture(sweep, full, {}, {}, "The probe itself, full resolution",
                 "The probe's own density in false colour, latitude and longitude.");
     for (std::size_t i : pictured(candidates, sweep)) {
         const EnvironmentView view = candidates[i].file->file.environment();
-        add_picture(sweep, draw_density(map, density_of(view)), knot_opacity(view, map), {},
+        add_picture(sweep, draw_density(map, pdf_of(view)), knot_opacity(view, map), {},
                     picture_title(candidates[i].row),
                     "The density that this file stores, in the same colours, with the borders of its cells.");
     }
 }
 
-/// `out`: alone, and in company.
+/// `out`: alone, and with an MIS partner.
 void add_situations(const compress::Target& target, const measure::LightSampler& sampler,
                     const std::vector<float>& density, const std::vector<SurfacePoint>& points, Scale scale,
                     const SweepOptions& options, Lit* out) {
     const std::vector<PointVariance> exact = point_variances(target, density, points);
     const SurfaceVariances variances = summary(exact, scale);
-    const DrawnVariances drawn =
-        sobol_variances(target, sampler, points, exact, scale, options.visibility.spp, options.seeds);
+    const SampledVariances sampled =
+        sobol_variances(target, sampler, points, exact, scale, options.visible.spp, options.seeds);
     out[0] = variances.alone;
-    out[1] = variances.company;
-    out[0].sobol = std::isinf(out[0].mean) ? HUGE_VAL : drawn.alone;
-    out[1].sobol = drawn.company;
+    out[1] = variances.partner;
+    out[0].sobol = std::isinf(out[0].mean) ? HUGE_VAL : sampled.alone;
+    out[1].sobol = sampled.partner;
 }
 
 } // namespace
@@ -102,15 +102,15 @@ Sweep sweep_environment(const builder::Target& fitted, const builder::Source& so
         sweep, candidates, steps_of(sweep.kind, options),
         [&](const Step& step) { return make_file(fitted, source, step); }, part(0.0, 0.7));
 
-    sweep.baseline = candidates.size();
-    for (Candidate& rival : environment_rivals(target, options)) candidates.push_back(std::move(rival));
+    sweep.reference = candidates.size();
+    for (Candidate& baseline : environment_baselines(target, options)) candidates.push_back(std::move(baseline));
     const std::vector<SurfacePoint> open = in_the_open(build::random_normals(options.normals)),
                                     hidden = behind_occluders(target, options.points);
     sweep.conditions = static_cast<std::uint32_t>(open.size());
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         part(0.7, 0.2)(static_cast<double>(i) / static_cast<double>(candidates.size()), "measuring");
         const measure::LightSampler& sampler = *candidates[i].sampler;
-        const std::vector<float> density = texel_densities(target, sampler);
+        const std::vector<float> density = texel_pdfs(target, sampler);
         SweepRow& row = candidates[i].row;
         add_situations(target, sampler, density, open, Scale::own, options, &row.lit[open_alone]);
         add_situations(target, sampler, density, hidden, Scale::picture, options, &row.lit[hidden_alone]);

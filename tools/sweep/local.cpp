@@ -5,10 +5,10 @@
 #include "compress/sum.h"
 #include "tools/cli/built.h"
 #include "tools/plot/density.h"
+#include "tools/sweep/baselines.h"
 #include "tools/sweep/build.h"
-#include "tools/sweep/rivals.h"
 #include "tools/sweep/surface.h"
-#include "tools/sweep/surface_draws.h"
+#include "tools/sweep/surface_samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,8 +68,8 @@ Candidate make_file(const builder::Target& target, const builder::Source& source
 }
 
 /// What a surface sees of the target, at full resolution: the density that all samplers approach.
-Density reflected_density(const compress::Target& target, const Normal& n) {
-    const Density light = density_of(target);
+Density reflected_pdf(const compress::Target& target, const Normal& n) {
+    const Density light = pdf_of(target);
     const double length = std::hypot(double{n[0]}, double{n[1]}, double{n[2]});
     compress::Sum sum;
     const build::TexelCosines cosines(target);
@@ -90,7 +90,7 @@ Density reflected_density(const compress::Target& target, const Normal& n) {
 void add_local_pictures(Sweep& sweep, const compress::Target& target, const std::vector<Candidate>& candidates) {
     const Normal normal = {1.0f, 0.0f, 1.0f};
     const build::Map map = plot_map(build::Layout::latlong, kPictureWidth);
-    const DensityImage full = draw_density(map, reflected_density(target, normal));
+    const DensityImage full = draw_density(map, reflected_pdf(target, normal));
     sweep.range = automatic_range(full);
     add_colour_bar(sweep);
     const std::vector<float> horizon = horizon_opacity(normal, map);
@@ -98,14 +98,14 @@ void add_local_pictures(Sweep& sweep, const compress::Target& target, const std:
                 "What a diffuse surface reflects of the probe, in false colour; the white line is its horizon.");
     for (std::size_t i : pictured(candidates, sweep)) {
         const PlottedNormal plotted{candidates[i].file->file.local(), normal};
-        add_picture(sweep, draw_density(map, density_of(plotted)), knot_opacity(plotted, map), horizon,
+        add_picture(sweep, draw_density(map, pdf_of(plotted)), knot_opacity(plotted, map), horizon,
                     picture_title(candidates[i].row),
                     "The density that this file has for the same normal, in the same colours, with the borders of "
                     "its cells.");
     }
 }
 
-/// Files and rivals with a renderer's points; not where those draw numbers of their own.
+/// Files and baselines with a renderer's points; not where those sample numbers of their own.
 void add_sobol(const compress::Target& target, const std::vector<build::Normal>& normals,
                const SweepOptions& options, std::vector<Candidate>& candidates) {
     const std::vector<SurfacePoint> points = in_the_open(normals);
@@ -116,7 +116,7 @@ void add_sobol(const compress::Target& target, const std::vector<build::Normal>&
     for (Candidate& each : candidates)
         if (each.has_pdf && std::isfinite(each.row.relative_variance))
             each.row.sobol =
-                sobol_variance(target, *each.sampler, points, irradiances, options.visibility.spp, options.seeds);
+                sobol_variance(target, *each.sampler, points, irradiances, options.visible.spp, options.seeds);
 }
 
 } // namespace
@@ -135,9 +135,9 @@ Sweep sweep_local(const builder::Target& fitted, const builder::Source& source, 
     build_all(
         sweep, candidates, steps_of(sweep.kind, options),
         [&](const Step& step) { return make_file(fitted, source, normals, step); }, part(0.0, 0.8));
-    part(0.8, 0.0)(0.0, "measuring rivals");
-    sweep.baseline = candidates.size();
-    for (Candidate& rival : local_rivals(target, normals)) candidates.push_back(std::move(rival));
+    part(0.8, 0.0)(0.0, "measuring baselines");
+    sweep.reference = candidates.size();
+    for (Candidate& baseline : local_baselines(target, normals)) candidates.push_back(std::move(baseline));
     part(0.85, 0.0)(0.0, "drawing");
     add_sobol(target, normals, options, candidates);
     if (options.pictures) add_local_pictures(sweep, target, candidates);

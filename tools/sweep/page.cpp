@@ -35,14 +35,14 @@ std::string prose(const std::string& text) {
 }
 
 const char* kind_text(SweepKind kind) {
-    return kind == SweepKind::environment ? "environment map"
-           : kind == SweepKind::local     ? "environment map for every normal"
-           : kind == SweepKind::places    ? "environment map for the places of a scene"
-                                          : "BRDF";
+    return kind == SweepKind::environment  ? "environment map"
+           : kind == SweepKind::local      ? "environment map for every normal"
+           : kind == SweepKind::visibility ? "environment map for the positions of a scene"
+                                           : "BRDF";
 }
 
 const char* conditions_text(SweepKind kind) {
-    return kind == SweepKind::brdf ? "views" : kind == SweepKind::places ? "places" : "normals";
+    return kind == SweepKind::brdf ? "views" : kind == SweepKind::visibility ? "visibility" : "normals";
 }
 
 std::string fact(const std::string& name, const std::string& value, const std::string& small) {
@@ -51,23 +51,23 @@ std::string fact(const std::string& name, const std::string& value, const std::s
 }
 
 std::string facts_html(const Sweep& sweep, const Advice& advice) {
-    const SweepRow &best = sweep.rows[advice.recommended.row], &base = sweep.rows[sweep.baseline];
+    const SweepRow &best = sweep.rows[advice.recommended.row], &base = sweep.rows[sweep.reference];
     std::string out = "<dl class=\"facts\">\n";
     out += fact("Size", to_readable_size(best.bytes),
                 short_number(double(base.bytes) / double(best.bytes)) + " times smaller than the " + base.label +
                     ", which takes " + to_readable_size(base.bytes));
     const bool pictures = sweep.kind == SweepKind::environment;
     const std::string where = pictures ? " on a diffuse surface, nothing hidden" : "";
-    out += fact("Noise at " + std::to_string(sweep.visibility.spp) + " samples per pixel",
-                noise_text(best.shaded(), sweep.visibility.spp),
+    out += fact("Noise at " + std::to_string(sweep.visible.spp) + " samples per pixel",
+                noise_text(best.shaded(), sweep.visible.spp),
                 "relative variance of a sample " + short_number(best.shaded()) + where);
     out += fact("Noise at 16, 64, 256 samples", noise_texts(best.shaded()),
                 "median over " + std::string(conditions_text(sweep.kind)) + " " +
                     noise_texts(pictures ? best.lit[open_alone].median : best.median));
     const double sobol = pictures ? best.lit[open_alone].sobol : best.sobol;
     if (sobol == sobol)
-        out += fact("With a scrambled Sobol' sequence", noise_text(sobol, sweep.visibility.spp),
-                    "noise at " + std::to_string(sweep.visibility.spp) + " samples per pixel" + where);
+        out += fact("With a scrambled Sobol' sequence", noise_text(sobol, sweep.visible.spp),
+                    "noise at " + std::to_string(sweep.visible.spp) + " samples per pixel" + where);
     if (std::isfinite(base.shaded() / best.shaded()))
         out += fact("Sample for sample", noise_ratio_text(base.shaded() / best.shaded()), "the " + base.label);
     if (const Interval time = ratio_interval(best.times.sample, base.times.sample); time.known())
@@ -88,11 +88,11 @@ Interval only(double value) { return {value, kUnknown, kUnknown}; }
 
 /// In the order of the page. Times come last, so that a page without them just ends earlier.
 std::vector<Chart> charts_of(const Sweep& sweep) {
-    const std::string base = sweep.rows[sweep.baseline].label;
+    const std::string base = sweep.rows[sweep.reference].label;
     const char* what = sweep.kind == SweepKind::environment ? "of the light itself"
                        : sweep.kind == SweepKind::local ? "of what a diffuse surface reflects, mean over normals"
-                       : sweep.kind == SweepKind::places
-                           ? "of what the scene reflects, with what it hides, mean over places"
+                       : sweep.kind == SweepKind::visibility
+                           ? "of what the scene reflects, with what it hides, mean over positions"
                            : "of what is reflected to a view, mean over views";
     const bool pictures = sweep.kind == SweepKind::environment;
     std::vector<Chart> out;
@@ -106,9 +106,9 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
     out.push_back({"variance", pictures ? "Noise of the light itself" : "Noise",
                    std::string("Relative variance of one sample ") + what + ": lower is better.",
                    "relative variance", [](const Sweep&, const SweepRow& r) { return only(r.relative_variance); },
-                   pictures ? kUnknown : sweep.visibility.largest_variance(),
-                   short_number(100.0 * sweep.visibility.threshold) + " % noise at " +
-                       std::to_string(sweep.visibility.spp) + " spp"});
+                   pictures ? kUnknown : sweep.visible.largest_variance(),
+                   short_number(100.0 * sweep.visible.threshold) + " % noise at " +
+                       std::to_string(sweep.visible.spp) + " spp"});
     out.push_back(
         {"weight", "Fireflies",
          "The largest weight f/p that a sample can have, over the mean: what a single pixel may flash by.",
@@ -121,9 +121,9 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
                    "Variance times time, in units of one sample of the " + base + ". " +
                        (sweep.kind == SweepKind::environment ? "Of irradiance on a diffuse surface. " : "") +
                        "A sample takes " + short_number(sweep.costs.shadow_ray_ns) +
-                       " ns beside its drawing: a shadow ray, a BRDF (--shadow-ray-ns).",
+                       " ns beside its sampling: a shadow ray, a BRDF (--shadow-ray-ns).",
                    "variance at equal time", [](const Sweep& s, const SweepRow& r) {
-                       const Interval t = cost_ratio(r, s.rows[s.baseline], open_alone, s.costs);
+                       const Interval t = cost_ratio(r, s.rows[s.reference], open_alone, s.costs);
                        return Interval{t.value * r.shaded(), t.low * r.shaded(), t.high * r.shaded()};
                    }});
     out.push_back({"pdf", "Time of a density",
@@ -175,8 +175,8 @@ std::string verdict_html(Verdict verdict) {
     switch (verdict) {
     case Verdict::ours:
         return "<span class=\"won\">the file</span>";
-    case Verdict::rival:
-        return "<span class=\"lost\">the rival</span>";
+    case Verdict::baseline:
+        return "<span class=\"lost\">the baseline</span>";
     case Verdict::even:
         return "too close to call";
     default:
@@ -188,13 +188,14 @@ std::string comparisons_html(const Sweep& sweep, const Advice& advice) {
     std::string out = "<section>\n<h2>Beside what renderers use today</h2>\n<ul class=\"say\">\n";
     for (const std::string& finding : advice.findings) out += "<li>" + prose(finding) + "</li>\n";
     out +=
-        "</ul>\n<p class=\"soft\">Each rival over the recommended file: more than 1 speaks for the file. Ratios of "
+        "</ul>\n<p class=\"soft\">Each baseline over the recommended file: more than 1 speaks for the file. Ratios "
+        "of "
         "times have the interval that holds the median with 95 % confidence; variances are exact.</p>\n"
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Rivals\"><table id=\"rivals\">\n"
-        "<thead><tr><th>rival</th><th>memory</th><th>variance</th>";
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Baselines\"><table id=\"baselines\">\n"
+        "<thead><tr><th>baseline</th><th>memory</th><th>variance</th>";
     if (sweep.timed) out += "<th>time a sample</th><th>variance at equal time</th><th class=\"text\">better</th>";
     out += "</tr></thead>\n<tbody>\n";
-    for (const RivalComparison& c : advice.comparisons) {
+    for (const BaselineComparison& c : advice.comparisons) {
         const SweepRow& row = sweep.rows[c.row];
         out += "<tr>" + element("td class=\"left\"", row.label) + element("td", short_number(c.bytes)) +
                element("td", short_number(c.variance));
@@ -264,18 +265,19 @@ std::string method_html(const Sweep& sweep) {
         lines.push_back(
             "On a diffuse surface: the same of the irradiance, light times cosine above the horizon, mean over " +
             conditions +
-            " random normals. In company: half of the samples are cosine distributed, all weighed by the balance "
+            " random normals. With an MIS partner: half of the samples are cosine distributed, all weighed by the "
+            "balance "
             "heuristic. Behind occluders: points of the demo scene, a sphere on a plane beside a wall; there "
             "variances "
             "are divided by E^2 + (0.1 mean E)^2, E of the point, so that a few nearly black ones do not decide. "
             "Columns "
             "named sobol (in sweep.csv) are variance times samples with scrambled Sobol' points, at " +
-            std::to_string(sweep.visibility.spp) + " samples, by drawing them.");
+            std::to_string(sweep.visible.spp) + " samples, by taking them.");
     else
         lines.push_back(std::string("Means are over ") + conditions + " random " + conditions_text(sweep.kind) +
                         ", none chosen for what a file stores. With Sobol' points: variance times samples with a "
                         "scrambled Sobol' sequence, at " +
-                        std::to_string(sweep.visibility.spp) + " samples, by drawing them.");
+                        std::to_string(sweep.visible.spp) + " samples, by taking them.");
     if (sweep.timed)
         lines.push_back(
             "Times: one thread, all samplers in turn within each of many rounds, so that what slows the "

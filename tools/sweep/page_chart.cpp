@@ -197,7 +197,7 @@ std::string point_group(const Sweep& sweep, const Chart& chart, const ReportSeri
            "</title>" + inside + "</g>\n";
 }
 
-/// Finds room for a rival's letter beside its dot.
+/// Finds room for a baseline's letter beside its dot.
 class Labels {
 public:
     void block(double x, double y) { taken_.push_back({x, y}); }
@@ -305,7 +305,7 @@ std::string chart_svg(const Sweep& sweep, const Chart& chart, std::size_t recomm
         for (const Placed& p : placed[s]) path.push_back(place(p));
         lines += path_svg(all[s], path);
     }
-    // Rivals first: what is recommended shall not be hidden.
+    // Baselines first: what is recommended shall not be hidden.
     for (int ours = 0; ours < 2; ++ours)
         for (std::size_t s = all.size(); s-- > 0;) {
             if (all[s].ours != (ours == 1)) continue;

@@ -9,14 +9,14 @@
 
 namespace acdf::tools {
 
-/// Rows that are drawn alike: a fit's, connected, or those of one rival.
+/// Rows that are drawn alike: a fit's, connected, or those of one baseline.
 struct ReportSeries {
     bool ours = false;
-    std::size_t index = 0; ///< among fits, or among rivals: gives shape and colour, or the letter
+    std::size_t index = 0; ///< among fits, or among baselines: gives shape and colour, or the letter
     std::string label;
     std::vector<std::size_t> rows; ///< by size
 
-    std::string letter() const; ///< of a rival: A, B, ...
+    std::string letter() const; ///< of a baseline: A, B, ...
 };
 std::vector<ReportSeries> series_of(const Sweep& sweep);
 

@@ -5,10 +5,10 @@ namespace acdf::tools {
 
 constexpr const char* report_style = R"(
 :root{color-scheme:light dark;--page:#f6f7f9;--card:#fff;--ink:#1b1f24;--soft:#59636e;--rule:#d5dae0;--grid:#e6e9ed;
---key:#0b62a8;--keybg:#e8f2fb;--f0:#0b62a8;--f1:#c75300;--f2:#0a7d58;--f3:#a3478c;--f4:#8a6d00;--rival:#454c54}
+--key:#0b62a8;--keybg:#e8f2fb;--f0:#0b62a8;--f1:#c75300;--f2:#0a7d58;--f3:#a3478c;--f4:#8a6d00;--baseline:#454c54}
 @media (prefers-color-scheme:dark){:root{--page:#11151a;--card:#1a2027;--ink:#e8ecf1;--soft:#a2adb9;--rule:#36404b;
 --grid:#29313a;--key:#6fb6f2;--keybg:#152737;--f0:#6fb6f2;--f1:#f09050;--f2:#4fc79a;--f3:#dd8bc6;--f4:#d9bb4a;
---rival:#c3ccd6}}
+--baseline:#c3ccd6}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--page);color:var(--ink);font:16px/1.5 system-ui,-apple-system,"Segoe UI",sans-serif}
 header,main,footer{max-width:1200px;margin:0 auto;padding:0 20px}
@@ -40,7 +40,7 @@ figcaption{font-size:.88rem;line-height:1.4}
 .chart{display:block;width:100%;height:auto;margin-top:auto;padding-top:8px}
 .chart text,.mark text{font-family:inherit;fill:var(--soft);font-size:13px}
 .chart .label{fill:var(--ink);font-size:14px}
-.chart .letter,.mark .letter{fill:var(--rival);font-weight:700;font-size:14px}
+.chart .letter,.mark .letter{fill:var(--baseline);font-weight:700;font-size:14px}
 .chart .limit-label{fill:var(--key)}
 svg .grid{stroke:var(--grid)}
 svg .axis{stroke:var(--soft)}
@@ -59,10 +59,10 @@ svg .chosen{fill:none;stroke:var(--key);stroke-width:2.5}
 .line.f3,.f3 .error{stroke:var(--f3)}.line.f4,.f4 .error{stroke:var(--f4)}
 svg .line.f0{stroke-width:3.5}
 .r0,.r1,.r2,.r3,.r4{fill:var(--card)}
-svg .r0.point,svg .r1.point,svg .r2.point,svg .r3.point,svg .r4.point{stroke:var(--rival);stroke-width:2}
-svg .line.r0,svg .line.r1,svg .line.r2,svg .line.r3,svg .line.r4{stroke:var(--rival);stroke-width:1.5;
+svg .r0.point,svg .r1.point,svg .r2.point,svg .r3.point,svg .r4.point{stroke:var(--baseline);stroke-width:2}
+svg .line.r0,svg .line.r1,svg .line.r2,svg .line.r3,svg .line.r4{stroke:var(--baseline);stroke-width:1.5;
 stroke-dasharray:4 4}
-[class*="point r"] .error{stroke:var(--rival)}
+[class*="point r"] .error{stroke:var(--baseline)}
 .pictures img{display:block;width:100%;height:auto;margin-top:auto;border-radius:3px}
 .pictures h3{margin-bottom:8px}
 .scale{display:flex;align-items:center;gap:10px;margin:12px 0 0;font-size:.88rem;color:var(--soft)}

@@ -12,11 +12,11 @@ bool known(double value) { return value == value; }
 
 /// ns of a sample, one a round.
 std::vector<double> sample_times(const SweepRow& row, Situation situation, const SampleCosts& costs) {
-    const bool company = situation == open_company || situation == hidden_company;
+    const bool partner = situation == open_partner || situation == hidden_partner;
     std::vector<double> out = row.times.sample;
-    if (company && row.times.pdf.size() != out.size()) return {};
+    if (partner && row.times.pdf.size() != out.size()) return {};
     for (std::size_t i = 0; i < out.size(); ++i) {
-        if (company) out[i] = 0.5 * (out[i] + row.times.pdf[i] + costs.cosine_ns);
+        if (partner) out[i] = 0.5 * (out[i] + row.times.pdf[i] + costs.cosine_ns);
         out[i] += costs.shadow_ray_ns;
     }
     return out;
@@ -24,7 +24,7 @@ std::vector<double> sample_times(const SweepRow& row, Situation situation, const
 
 /// How much more than the least noise of all files a row has, in the worst situation; noise that cannot be seen
 /// counts as the least.
-std::vector<double> excess_noise(const std::vector<SweepRow>& rows, const Visibility& visibility,
+std::vector<double> excess_noise(const std::vector<SweepRow>& rows, const VisibleNoise& visible,
                                  const SampleCosts& costs, measure::Numbers numbers) {
     std::vector<double> out(rows.size(), HUGE_VAL);
     for (std::size_t i = 0; i < rows.size(); ++i)
@@ -41,21 +41,21 @@ std::vector<double> excess_noise(const std::vector<SweepRow>& rows, const Visibi
             least = std::min(least, costly[i]);
         }
         for (std::size_t i = 0; i < rows.size(); ++i)
-            if (variance_in(rows[i], situation, numbers) > visibility.largest_variance() && costly[i] > least)
+            if (variance_in(rows[i], situation, numbers) > visible.largest_variance() && costly[i] > least)
                 out[i] = std::max(out[i], std::sqrt(costly[i] / least));
     }
     return out;
 }
 
-bool invisible(const SweepRow& row, const Visibility& visibility, measure::Numbers numbers) {
+bool invisible(const SweepRow& row, const VisibleNoise& visible, measure::Numbers numbers) {
     for (std::size_t s = 0; s < kSituations; ++s)
-        if (!(variance_in(row, static_cast<Situation>(s), numbers) <= visibility.largest_variance())) return false;
+        if (!(variance_in(row, static_cast<Situation>(s), numbers) <= visible.largest_variance())) return false;
     return true;
 }
 
-Recommended for_pictures(const std::vector<SweepRow>& rows, const Visibility& visibility, const SampleCosts& costs,
+Recommended for_pictures(const std::vector<SweepRow>& rows, const VisibleNoise& visible, const SampleCosts& costs,
                          measure::Numbers numbers) {
-    const std::vector<double> excess = excess_noise(rows, visibility, costs, numbers);
+    const std::vector<double> excess = excess_noise(rows, visible, costs, numbers);
     double smallest = HUGE_VAL; // of those that are good enough
     for (std::size_t i = 0; i < rows.size(); ++i)
         if (excess[i] <= kSameNoise) smallest = std::min(smallest, static_cast<double>(rows[i].bytes));
@@ -65,7 +65,7 @@ Recommended for_pictures(const std::vector<SweepRow>& rows, const Visibility& vi
         if (!rows[i].ours() || (!fits && !std::isinf(smallest))) continue;
         if (best == rows.size() || excess[i] < excess[best]) best = i;
     }
-    return {best, invisible(rows[best], visibility, numbers)};
+    return {best, invisible(rows[best], visible, numbers)};
 }
 
 } // namespace
@@ -81,16 +81,16 @@ Interval cost_ratio(const SweepRow& a, const SweepRow& b, Situation situation, c
     return ratio_interval(sample_times(a, situation, costs), sample_times(b, situation, costs));
 }
 
-Recommended recommended_row(const std::vector<SweepRow>& rows, const Visibility& visibility,
+Recommended recommended_row(const std::vector<SweepRow>& rows, const VisibleNoise& visible,
                             const SampleCosts& costs, measure::Numbers numbers) {
     for (const SweepRow& row : rows)
-        if (row.ours() && known(row.lit[open_alone].mean)) return for_pictures(rows, visibility, costs, numbers);
+        if (row.ours() && known(row.lit[open_alone].mean)) return for_pictures(rows, visible, costs, numbers);
     Recommended out;
     bool found = false;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const double variance = variance_in(rows[i], open_alone, numbers);
         if (!rows[i].ours() || !known(variance)) continue;
-        const bool reached = variance <= visibility.largest_variance();
+        const bool reached = variance <= visible.largest_variance();
         const SweepRow& best = rows[out.row];
         const bool better = !found || (reached != out.reached ? reached
                                        : reached              ? rows[i].bytes < best.bytes

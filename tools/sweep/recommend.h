@@ -13,8 +13,8 @@ namespace acdf::tools {
 /// (local, BRDF) what a surface reflects anyway.
 double variance_in(const SweepRow& row, Situation situation, measure::Numbers numbers);
 
-/// How many times as long as one of `b` a sample of `a` takes, all that it costs included; in company half of the
-/// samples are the surface's, and all need the density of both. Unknown where it was not timed.
+/// How many times as long as one of `b` a sample of `a` takes, all that it costs included; with an MIS partner half
+/// of the samples are the surface's, and all need the density of both. Unknown where it was not timed.
 Interval cost_ratio(const SweepRow& a, const SweepRow& b, Situation situation, const SampleCosts& costs);
 
 struct Recommended {
@@ -30,8 +30,8 @@ constexpr double kSameSize = 1.25;
 /// Environment: the smallest file whose noise on a diffuse surface is in no situation more than kSameNoise times
 /// the least of all files after the same time, or too small to see, but for kSameSize; where there is none the one
 /// that misses by least. Otherwise the smallest file whose variance_in() is at most
-/// visibility.largest_variance(), or the least noisy. There must be a file of known variance.
-Recommended recommended_row(const std::vector<SweepRow>& rows, const Visibility& visibility,
+/// visible.largest_variance(), or the least noisy. There must be a file of known variance.
+Recommended recommended_row(const std::vector<SweepRow>& rows, const VisibleNoise& visible,
                             const SampleCosts& costs = {},
                             measure::Numbers numbers = measure::Numbers::independent);
 

@@ -23,7 +23,7 @@ const char* where_text(Situation situation) {
     switch (situation) {
     case open_alone:
         return "Nothing hidden, samples of the light alone";
-    case open_company:
+    case open_partner:
         return "Nothing hidden, half of the samples the surface's own (balance heuristic)";
     case hidden_alone:
         return "Behind the demo scene's sphere and wall, samples of the light alone";
@@ -33,26 +33,26 @@ const char* where_text(Situation situation) {
 }
 
 std::string sentence_of(const Sweep& sweep, const SituationAdvice& s) {
-    const SweepRow& base = sweep.rows[sweep.baseline];
+    const SweepRow& base = sweep.rows[sweep.reference];
     std::string text = std::string(where_text(s.situation)) + ": " + noise_texts(s.lit.mean) +
                        " noise at 16, 64, 256 "
                        "independent samples (median point: " +
                        noise_texts(s.lit.median) + ")";
     if (s.lit.sobol == s.lit.sobol)
-        text += ", " + noise_text(s.lit.sobol, sweep.visibility.spp) + " at " +
-                std::to_string(sweep.visibility.spp) + " of a scrambled Sobol' sequence";
+        text += ", " + noise_text(s.lit.sobol, sweep.visible.spp) + " at " + std::to_string(sweep.visible.spp) +
+                " of a scrambled Sobol' sequence";
     const char* after = sweep.timed ? "After the same time: " : "After the same samples: ";
-    text += std::string(". ") + after + noise_ratio_text(s.over_baseline.value) + " the " + base.label;
-    if (!s.has_rival) return text + ".";
-    const bool even = s.over_rival.low < 1.0 && s.over_rival.high > 1.0;
-    return text + ", " + noise_ratio_text(s.over_rival.value) + " the best rival, the " +
-           sweep.rows[s.rival].label + (even ? " (too close to call)." : ".");
+    text += std::string(". ") + after + noise_ratio_text(s.over_reference.value) + " the " + base.label;
+    if (!s.has_baseline) return text + ".";
+    const bool even = s.over_best_baseline.low < 1.0 && s.over_best_baseline.high > 1.0;
+    return text + ", " + noise_ratio_text(s.over_best_baseline.value) + " the best baseline, the " +
+           sweep.rows[s.best_baseline].label + (even ? " (too close to call)." : ".");
 }
 
 } // namespace
 
 const char* to_string(Situation situation) {
-    constexpr const char* names[kSituations] = {"open", "open_company", "hidden", "hidden_company"};
+    constexpr const char* names[kSituations] = {"open", "open_partner", "hidden", "hidden_partner"};
     return names[situation];
 }
 
@@ -72,15 +72,15 @@ std::vector<SituationAdvice> situations_of(const Sweep& sweep, const SweepRow& b
         SituationAdvice one;
         one.situation = static_cast<Situation>(i);
         one.lit = best.lit[i];
-        one.over_baseline = variance_ratio(sweep, sweep.rows[sweep.baseline], best, one.situation);
+        one.over_reference = variance_ratio(sweep, sweep.rows[sweep.reference], best, one.situation);
         for (std::size_t r = 0; r < sweep.rows.size(); ++r) {
             if (sweep.rows[r].ours()) continue;
             const Interval ratio = variance_ratio(sweep, sweep.rows[r], best, one.situation);
             if (!ratio.known() || std::isinf(ratio.value)) continue;
-            if (one.has_rival && ratio.value >= one.over_rival.value) continue;
-            one.rival = r;
-            one.has_rival = true;
-            one.over_rival = ratio;
+            if (one.has_baseline && ratio.value >= one.over_best_baseline.value) continue;
+            one.best_baseline = r;
+            one.has_baseline = true;
+            one.over_best_baseline = ratio;
         }
         one.sentence = sentence_of(sweep, one);
         out.push_back(std::move(one));

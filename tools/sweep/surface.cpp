@@ -21,7 +21,7 @@ std::array<float, 3> texel_middle(const compress::Target& target, std::uint32_t 
     return {static_cast<float>(middle[0]), static_cast<float>(middle[1]), static_cast<float>(middle[2])};
 }
 
-std::vector<float> texel_densities(const compress::Target& target, const measure::LightSampler& sampler) {
+std::vector<float> texel_pdfs(const compress::Target& target, const measure::LightSampler& sampler) {
     std::vector<float> out(target.values.size());
     compress::parallel_for(0u, target.rows, [&](std::uint32_t r) {
         const std::unique_ptr<measure::PointSampler> point = sampler.point_sampler();
@@ -44,14 +44,14 @@ namespace {
 /// Integrals over what a point sees. With p + b in the place of p, weights of the balance heuristic are p / (p +
 /// b).
 struct Sums {
-    compress::Sum irradiance, alone, company, drawn, cosine;
+    compress::Sum irradiance, alone, partner, sampled, cosine;
     bool violated = false;
 
     void add_row(const double row[5], double measure) {
         irradiance.add(row[0] * measure);
         alone.add(row[1] * measure);
-        company.add(row[2] * measure);
-        drawn.add(row[3] * measure);
+        partner.add(row[2] * measure);
+        sampled.add(row[3] * measure);
         cosine.add(row[4] * measure);
     }
     PointVariance result() const {
@@ -61,8 +61,8 @@ struct Sums {
         if (!(e > 0.0)) return out;
         out.alone = violated ? HUGE_VAL : std::max(0.0, alone.value() - e * e);
         // Of one sample of each (Veach and Guibas, SIGGRAPH 1995); one of both together has twice that.
-        const double of_two = company.value() - drawn.value() * drawn.value() - cosine.value() * cosine.value();
-        out.company = 2.0 * std::max(0.0, of_two);
+        const double of_two = partner.value() - sampled.value() * sampled.value() - cosine.value() * cosine.value();
+        out.partner = 2.0 * std::max(0.0, of_two);
         return out;
     }
 };
@@ -106,13 +106,13 @@ SurfaceVariances summary(const std::vector<PointVariance>& points, Scale scale) 
     double mean = 0.0;
     for (const PointVariance& point : points) mean += point.irradiance / static_cast<double>(points.size());
     const double floor = scale == Scale::picture ? 0.1 * mean : 0.0;
-    std::vector<double> alone, company;
+    std::vector<double> alone, partner;
     for (const PointVariance& point : points) {
         const double e2 = point.irradiance * point.irradiance + floor * floor;
         alone.push_back(e2 > 0.0 ? point.alone / e2 : 0.0);
-        company.push_back(e2 > 0.0 ? point.company / e2 : 0.0);
+        partner.push_back(e2 > 0.0 ? point.partner / e2 : 0.0);
     }
-    return {spread_of(std::move(alone)), spread_of(std::move(company))};
+    return {spread_of(std::move(alone)), spread_of(std::move(partner))};
 }
 
 Lit over_normals(const std::vector<build::Normal>& normals,

@@ -1,5 +1,5 @@
 // Exact variances of what a diffuse surface reflects, from a density that is known at every texel: alone and in
-// company of the surface's own samples, in the open and where something is in the way.
+// partner of the surface's own samples, in the open and where something is in the way.
 #pragma once
 
 #include "build/accuracy/local.h"
@@ -19,7 +19,7 @@ std::array<float, 3> texel_middle(const compress::Target& target, std::uint32_t 
 
 /// The density of a sampler that does not know the normal, in sr^-1, in the middle of each texel (its z halves the
 /// texel's solid angle).
-std::vector<float> texel_densities(const compress::Target& target, const measure::LightSampler& sampler);
+std::vector<float> texel_pdfs(const compress::Target& target, const measure::LightSampler& sampler);
 
 /// Where light is gathered: a unit normal, and what is hidden from there.
 struct SurfacePoint {
@@ -35,7 +35,7 @@ std::vector<SurfacePoint> in_the_open(const std::vector<build::Normal>& normals)
 struct PointVariance {
     double irradiance = 0.0;
     double alone = 0.0;   ///< of f/p
-    double company = 0.0; ///< half of the samples drawn by p, half by the cosine, weighed by the
+    double partner = 0.0; ///< half of the samples taken by p, half by the cosine, weighed by the
                           ///< balance heuristic
 };
 
@@ -48,9 +48,9 @@ std::vector<PointVariance> point_variances(const compress::Target& target, const
 /// E^2 + (0.1 mean E)^2, as of pixels (measure::noise_scale), so that a few nearly black ones do not decide.
 enum class Scale { own, picture };
 
-/// Relative variances over points that see any light, alone and in company.
+/// Relative variances over points that see any light, alone and with an MIS partner.
 struct SurfaceVariances {
-    Lit alone, company;
+    Lit alone, partner;
 };
 SurfaceVariances summary(const std::vector<PointVariance>& points, Scale scale);
 

@@ -19,9 +19,9 @@
 
 namespace acdf::tools {
 
-enum class SweepKind { environment, local, places, brdf };
+enum class SweepKind { environment, local, visibility, brdf };
 
-/// As users say it: "env", "local", "places", "brdf".
+/// As users say it: "env", "local", "visibility", "brdf".
 const char* to_string(SweepKind kind);
 /// All fits of a kind, in the order of the report; the first is the default of its subcommand.
 const std::vector<std::string>& fits_of(SweepKind kind);
@@ -30,7 +30,7 @@ std::vector<std::string> default_fits(SweepKind kind);
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// 4 KiB to 1 MB; local files from 16 KiB to 4 MB, places 1 and 4 MB, files of BRDFs up to 256 KiB.
+/// 4 KiB to 1 MB; local files from 16 KiB to 4 MB, visibility 1 and 4 MB, files of BRDFs up to 256 KiB.
 std::vector<std::uint64_t> default_budgets(SweepKind kind);
 
 /// Times of one sampler in rounds that it shared with all others, so that ratios within a round mean something.
@@ -40,23 +40,23 @@ struct SweepTimes {
 };
 
 /// How a renderer uses the light's samples: on a diffuse surface, with nothing in the way or behind what hides
-/// light in the demo scene, alone or in company of as many samples of the surface (balance heuristic).
-enum Situation : std::size_t { open_alone, open_company, hidden_alone, hidden_company, kSituations };
+/// light in the demo scene, alone or with an MIS partner of as many samples of the surface (balance heuristic).
+enum Situation : std::size_t { open_alone, open_partner, hidden_alone, hidden_partner, kSituations };
 
 /// Relative variance of one sample over points of a surface, exact. Infinite: biased.
 struct Lit {
     double mean = kUnknown, median = kUnknown, worst = kUnknown;
-    /// Of scrambled Sobol' points: the variance of a pixel times its samples, mean over points, by drawing them.
+    /// Of scrambled Sobol' points: the variance of a pixel times its samples, mean over points, by taking them.
     double sobol = kUnknown;
 };
 
-/// One file, or one rival. kUnknown where something does not apply.
+/// One file, or one baseline. kUnknown where something does not apply.
 struct SweepRow {
-    std::string system;      ///< "acdf", or a rival's name for programs: "full_cdf"
+    std::string system;      ///< "acdf", or a baseline's name for programs: "full_cdf"
     std::string fit;         ///< of acdf
     std::string label;       ///< for people
     std::string options;     ///< of acdf: what makes the file, in the words of the command line
-    std::uint64_t bytes = 0; ///< of the file; of a rival what sampling reads
+    std::uint64_t bytes = 0; ///< of the file; of a baseline what sampling reads
     std::uint64_t cells = 0; ///< of acdf
     /// Of one sample over the squared mean, exact. Infinite: biased, light without density. Environment: of the
     /// light itself; local and BRDF: of what a surface reflects, mean over normals or views.
@@ -86,17 +86,17 @@ struct SweepPicture {
 };
 
 /// When noise is too small to see: its standard deviation in a pixel, of `spp` samples, over the pixel's value.
-struct Visibility {
+struct VisibleNoise {
     std::uint32_t spp = 64;
     double threshold = 0.01;
 
     double largest_variance() const { return threshold * threshold * spp; }
 };
 
-/// What counts at equal time beside the drawing of light's samples.
+/// What counts at equal time beside the sampling of light's samples.
 struct SampleCosts {
     double shadow_ray_ns = 500.0; ///< what else a sample costs: a ray, a BRDF
-    double cosine_ns = 0.0;       ///< to draw one of the surface's samples and to evaluate its density
+    double cosine_ns = 0.0;       ///< to sample one of the surface's samples and to evaluate its density
 };
 
 struct Sweep {
@@ -105,9 +105,9 @@ struct Sweep {
     std::string description; ///< for people: "1024 x 512, lat-long"
     std::string command;     ///< "acdf env 'my probe.exr' --channel rgb", to which a row's options and -o are added
     std::string output;      ///< a name for the recommended file
-    Visibility visibility;
+    VisibleNoise visible;
     std::vector<SweepRow> rows;
-    std::size_t baseline = 0;       ///< row with which times are compared
+    std::size_t reference = 0;      ///< row with which times are compared
     std::uint32_t conditions = 0;   ///< normals or views that means are over
     std::vector<std::string> notes; ///< what a reader of the figures should know
     std::vector<SweepPicture> pictures;
@@ -121,12 +121,12 @@ struct Sweep {
 struct SweepOptions {
     std::vector<std::uint64_t> budgets; ///< empty: default_budgets
     std::vector<std::string> fits;      ///< empty: default_fits
-    Visibility visibility;
+    VisibleNoise visible;
     builder::TargetOptions target;
     bool timing = true;
     bool pictures = true;
-    std::uint32_t normals = 64; ///< environment and local; places: points
-    std::uint32_t views = 64;   ///< BRDF: of rivals; files are measured over the builder's own
+    std::uint32_t normals = 64; ///< environment and local; visibility: points
+    std::uint32_t views = 64;   ///< BRDF: of baselines; files are measured over the builder's own
     std::uint32_t points = 48;  ///< environment: of the demo scene, where light is hidden; about
     std::uint32_t seeds = 16;   ///< estimates with Sobol' points at each normal, view or point
     std::uint32_t rounds = 31;  ///< of timing
@@ -134,26 +134,26 @@ struct SweepOptions {
     measure::Numbers numbers = measure::Numbers::independent;
 };
 
-/// A probe's rows, rivals included, and pictures. Source, command and output are the caller's to fill in. Goals
+/// A probe's rows, baselines included, and pictures. Source, command and output are the caller's to fill in. Goals
 /// that are out of reach are noted and left out. Throws Failure where none is left.
 Sweep sweep_environment(const builder::Target& target, const builder::Source& source, const SweepOptions& options,
                         const build::Progress& progress = {});
 /// The same for files that know the normal.
 Sweep sweep_local(const builder::Target& target, const builder::Source& source, const SweepOptions& options,
                   const build::Progress& progress = {});
-/// What a file of places is made for and measured on.
+/// What a file with visibility cells is made for and measured on.
 struct SweptMesh {
     std::shared_ptr<const input::MeshSurface> surface;
     bool turned = false; ///< from y up
-    builder::Places places;
+    builder::Visibility visibility;
     std::vector<builder::SceneNormal> normals; ///< of both sides
     std::string text;                          ///< that files tell
     std::string options;                       ///< in the words of the command line
 };
-/// Files of places beside those of normals alone, on a mesh with what it hides: at options.normals points all over
-/// it. There are no pictures.
-Sweep sweep_places(const builder::Target& target, const builder::Source& source, const SweptMesh& mesh,
-                   const SweepOptions& options, const build::Progress& progress = {});
+/// Files with visibility cells beside those of normals alone, on a mesh with what it hides: at options.normals
+/// points all over it. There are no pictures.
+Sweep sweep_visibility(const builder::Target& target, const builder::Source& source, const SweptMesh& mesh,
+                       const SweepOptions& options, const build::Progress& progress = {});
 /// The same of a BRDF.
 Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const build::Progress& progress = {});
 

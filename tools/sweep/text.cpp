@@ -17,10 +17,10 @@ double rounded(double value) {
     return std::strtod(text, nullptr);
 }
 
-const SweepTimes& baseline(const Sweep& sweep) { return sweep.rows[sweep.baseline].times; }
+const SweepTimes& reference(const Sweep& sweep) { return sweep.rows[sweep.reference].times; }
 
 Interval sample_ratio(const Sweep& sweep, const SweepRow& row) {
-    return ratio_interval(row.times.sample, baseline(sweep).sample);
+    return ratio_interval(row.times.sample, reference(sweep).sample);
 }
 
 using S = const Sweep&;
@@ -35,7 +35,7 @@ constexpr SweepColumn columns[] = {
     {"cells", "cells", false,
      [](S, R r) -> SweepValue { return r.cells > 0 ? SweepValue(r.cells) : SweepValue(kUnknown); }},
     {"relative_variance", "relative variance", false, [](S, R r) -> SweepValue { return r.relative_variance; }},
-    {"noise", "noise", false, [](S s, R r) -> SweepValue { return std::sqrt(r.shaded() / s.visibility.spp); }},
+    {"noise", "noise", false, [](S s, R r) -> SweepValue { return std::sqrt(r.shaded() / s.visible.spp); }},
     {"noise_16", nullptr, false, [](S, R r) -> SweepValue { return noise_of(r.shaded(), 16); }},
     {"noise_64", nullptr, false, [](S, R r) -> SweepValue { return noise_of(r.shaded(), 64); }},
     {"noise_256", nullptr, false, [](S, R r) -> SweepValue { return noise_of(r.shaded(), 256); }},
@@ -46,17 +46,17 @@ constexpr SweepColumn columns[] = {
      [](S, R r) -> SweepValue { return r.lit[open_alone].mean; }},
     {"irradiance_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_alone].median; }},
     {"irradiance_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_alone].sobol; }},
-    {"company_variance", "the same in company", false,
-     [](S, R r) -> SweepValue { return r.lit[open_company].mean; }},
-    {"company_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_company].median; }},
-    {"company_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_company].sobol; }},
+    {"partner_variance", "the same with an MIS partner", false,
+     [](S, R r) -> SweepValue { return r.lit[open_partner].mean; }},
+    {"partner_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_partner].median; }},
+    {"partner_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_partner].sobol; }},
     {"hidden_variance", "behind occluders", false, [](S, R r) -> SweepValue { return r.lit[hidden_alone].mean; }},
     {"hidden_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_alone].median; }},
     {"hidden_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_alone].sobol; }},
-    {"hidden_company_variance", "behind occluders, in company", false,
-     [](S, R r) -> SweepValue { return r.lit[hidden_company].mean; }},
-    {"hidden_company_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_company].median; }},
-    {"hidden_company_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_company].sobol; }},
+    {"hidden_partner_variance", "behind occluders, with an MIS partner", false,
+     [](S, R r) -> SweepValue { return r.lit[hidden_partner].mean; }},
+    {"hidden_partner_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_partner].median; }},
+    {"hidden_partner_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_partner].sobol; }},
     {"max_weight", "largest weight", false, [](S, R r) -> SweepValue { return r.max_weight; }},
     {"rms_pdf_error", "RMS error of pdf", false, [](S, R r) -> SweepValue { return r.rms; }},
     {"build_seconds", "build, s", true, [](S, R r) -> SweepValue { return r.build_seconds; }},
@@ -73,7 +73,7 @@ constexpr SweepColumn columns[] = {
     {"time_ratio_high", nullptr, true, [](S s, R r) -> SweepValue { return sample_ratio(s, r).high; }},
     {"equal_time_variance", "variance at equal time", true,
      [](S s, R r) -> SweepValue {
-         return r.shaded() * cost_ratio(r, s.rows[s.baseline], open_alone, s.costs).value;
+         return r.shaded() * cost_ratio(r, s.rows[s.reference], open_alone, s.costs).value;
      }},
 };
 
@@ -96,8 +96,8 @@ nlohmann::ordered_json interval_json(const Interval& i) {
     return {rounded(i.value), rounded(i.low), rounded(i.high)};
 }
 
-nlohmann::ordered_json comparison_json(const RivalComparison& c, bool timed) {
-    constexpr const char* verdicts[] = {"acdf", "rival", "even", "unknown"};
+nlohmann::ordered_json comparison_json(const BaselineComparison& c, bool timed) {
+    constexpr const char* verdicts[] = {"acdf", "baseline", "even", "unknown"};
     nlohmann::ordered_json out = {
         {"row", c.row}, {"bytes_ratio", json_value(c.bytes)}, {"variance_ratio", json_value(c.variance)}};
     if (!timed) return out;
@@ -113,9 +113,9 @@ nlohmann::ordered_json situation_json(const SituationAdvice& s) {
             {"median", json_value(s.lit.median)},
             {"sobol", json_value(s.lit.sobol)},
             {"noise_percent", noise_json(s.lit.mean)},
-            {"baseline_variance_ratio", interval_json(s.over_baseline)},
-            {"best_rival", s.has_rival ? nlohmann::ordered_json(s.rival) : nlohmann::ordered_json()},
-            {"best_rival_variance_ratio", interval_json(s.over_rival)}};
+            {"reference_variance_ratio", interval_json(s.over_reference)},
+            {"best_baseline", s.has_baseline ? nlohmann::ordered_json(s.best_baseline) : nlohmann::ordered_json()},
+            {"best_baseline_variance_ratio", interval_json(s.over_best_baseline)}};
 }
 
 } // namespace
@@ -158,12 +158,12 @@ std::string sweep_json(const Sweep& sweep) {
         {"description", sweep.description},
         {"conditions", sweep.conditions},
         {"timed", sweep.timed},
-        {"baseline", sweep.baseline},
+        {"reference", sweep.reference},
         {"recommendation",
          {{"row", advice.recommended.row},
           {"reached", advice.recommended.reached},
-          {"spp", sweep.visibility.spp},
-          {"threshold", sweep.visibility.threshold},
+          {"spp", sweep.visible.spp},
+          {"threshold", sweep.visible.threshold},
           {"sentence", advice.sentence},
           {"sequence", sweep.numbers == measure::Numbers::sobol ? "sobol" : "independent"},
           {"shadow_ray_ns", sweep.costs.shadow_ray_ns},
@@ -175,7 +175,7 @@ std::string sweep_json(const Sweep& sweep) {
         {"comparisons", nlohmann::ordered_json::array()},
         {"rows", nlohmann::ordered_json::array()}};
     for (const SituationAdvice& one : advice.situations) out["pictures"].push_back(situation_json(one));
-    for (const RivalComparison& c : advice.comparisons)
+    for (const BaselineComparison& c : advice.comparisons)
         out["comparisons"].push_back(comparison_json(c, sweep.timed));
     for (const SweepRow& row : sweep.rows) {
         nlohmann::ordered_json each;

@@ -64,7 +64,7 @@ double timed_block(const Inputs& in, std::size_t begin, PointSampler& sampler, c
     return taken / static_cast<double>(count * kSamplesAPoint);
 }
 
-/// Of a block, after another one: a renderer draws with one sampler all the time, and here the one before it has
+/// Of a block, after another one: a renderer samples with one sampler all the time, and here the one before it has
 /// just filled the caches.
 template <class Work>
 double nanoseconds_each(const Inputs& in, std::size_t begin, PointSampler& sampler, const Work& work) {

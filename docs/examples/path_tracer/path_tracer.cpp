@@ -1,7 +1,7 @@
 // path_tracer SAMPLER FILE.acdf SKY.pfm OUT.pfm SAMPLES WIDTH
 //
 // Paths of three bounces under an environment. SAMPLER: cosine, environment, local or product. At each point light
-// is drawn from the file, or from the surface's own lobe, and both are combined by the balance heuristic. Prints
+// is sampled from the file, or from the surface's own lobe, and both are combined by the balance heuristic. Prints
 // the mean of the picture and the variance of a sample of it.
 #include "picture.h"
 #include "scene.h"
@@ -61,14 +61,14 @@ acdf::ProductSample brdf_sample(const Material& m, const float wo[3], double u0,
     acdf::ProductSample s = {{sine * std::cos(phi), sine * std::sin(phi), cosine}, 0.0f};
     if (glossy) {
         const float mirrored[3] = {-wo[0], -wo[1], wo[2]};
-        const float drawn[3] = {s.direction[0], s.direction[1], s.direction[2]};
-        acdf::surface_frame(mirrored).to_world(drawn, s.direction);
+        const float sampled[3] = {s.direction[0], s.direction[1], s.direction[2]};
+        acdf::surface_frame(mirrored).to_world(sampled, s.direction);
     }
     s.pdf = brdf_pdf(m, wo, s.direction);
     return s;
 }
 
-// ---- where light is drawn from
+// ---- where light is sampled from
 
 /// A shading point: its surface, and where it is seen from.
 struct Point {
@@ -77,7 +77,7 @@ struct Point {
     float wo[3]; ///< in the frame
 };
 
-/// No light is drawn: the surface's lobe finds it or does not.
+/// No light is sampled: the surface's lobe finds it or does not.
 struct NoLight {
     static constexpr bool draws = false;
     struct At {
@@ -140,7 +140,7 @@ struct ProductLight {
 
 // ---- paths
 
-/// Light that reaches the eye along a ray: what the sky shows, and what is drawn at each of three points.
+/// Light that reaches the eye along a ray: what the sky shows, and what is sampled at each of three points.
 template <class Light>
 Vec path(const Scene& scene, const Picture& sky, const Light& light, Vec from, Vec towards, Random& random) {
     Hit hit = scene.intersect(from, towards);

@@ -1,5 +1,5 @@
-// three-gpu-pathtracer with an .acdf file in place of the tables that it makes of the environment: the same picture from
-// fewer samples. Written for three-gpu-pathtracer 0.0.26, whose shader it extends by two functions.
+// three-gpu-pathtracer with an .acdf file in place of the tables that it makes of the environment: the same picture, with
+// as many samples. Written for three-gpu-pathtracer 0.0.26, whose shader it extends by two functions.
 //
 //   const file = reader.open(bytes);                       // of the same map: acdf env sky.hdr --filter bilinear
 //   const pathTracer = new WebGLPathTracer(renderer);
@@ -35,7 +35,7 @@ function tablesOf(file) {
     return texture;
 }
 
-/** Draws from `file` (an environment) instead of scene.environment's own tables. */
+/** Samples from `file` (an environment) instead of scene.environment's own tables. */
 export function drawEnvironmentFrom(pathTracer, file) {
     const {material} = pathTracer._pathTracer, before = material.fragmentShader;
     if (!before.includes(AFTER)) throw new Error(`the path tracer's shader has no "${AFTER}"`);

@@ -32,8 +32,8 @@ double hashed(std::uint32_t x) {
 /// What the relative variance of a view is made from.
 class VarianceSums {
 public:
-    /// `places`: how many there are of this kind, `measure` of them all.
-    void add(double f, double p, double measure, double cosine, std::uint32_t places = 1) {
+    /// `number`: how many there are of this kind, `measure` of them all.
+    void add(double f, double p, double measure, double cosine, std::uint32_t number = 1) {
         if (cosine <= 0.0) {
             below_.add(p * measure);
             return;
@@ -42,7 +42,7 @@ public:
         albedo_.add(f * measure);
         if (!(f > 0.0)) return;
         if (p > 0.0) second_.add(f * f / p * measure);
-        else violations_ += places;
+        else violations_ += number;
     }
     ViewAccuracy result() const {
         ViewAccuracy out;
@@ -66,8 +66,8 @@ private:
 /// All sums of one view.
 class ViewSums {
 public:
-    void add(double f, double p, double measure, double cosine, std::uint32_t places = 1) {
-        variance_.add(f, p, measure, cosine, places);
+    void add(double f, double p, double measure, double cosine, std::uint32_t number = 1) {
+        variance_.add(f, p, measure, cosine, number);
         if (cosine <= 0.0) return;
         square_p_.add(p * p * measure);
         cross_.add(p * f * measure);
@@ -131,9 +131,9 @@ void for_each_half_vector(const compress::View& view, const double wo[3], std::u
 
 /// The densities of a file, bit for bit those of its BrdfView: of several directions at once, by vectors where they
 /// serve.
-class StoredDensities {
+class StoredPdfs {
 public:
-    explicit StoredDensities(const File& file) : brdf_(file.brdf().data()) {
+    explicit StoredPdfs(const File& file) : brdf_(file.brdf().data()) {
         if (!brdf_.tables || !brdf_.tables->grid) return; // a wave would look up the view for each direction
         if (!BrdfWavefront::prepare(file.brdf(), waves_).ok()) throw std::bad_alloc();
     }
@@ -170,7 +170,7 @@ std::vector<compress::View> random_views(std::uint32_t count, bool isotropic, do
     return out;
 }
 
-std::vector<ViewAccuracy> measure_views(const ViewDensity& density, const compress::Reflected& reflected,
+std::vector<ViewAccuracy> measure_views(const ViewPdf& density, const compress::Reflected& reflected,
                                         const std::vector<compress::View>& views, std::uint32_t columns,
                                         std::uint32_t rows) {
     std::vector<ViewAccuracy> out(views.size());
@@ -187,8 +187,7 @@ std::vector<ViewAccuracy> measure_views(const ViewDensity& density, const compre
     return out;
 }
 
-std::vector<double> relative_variances(const std::vector<ViewDensity>& densities,
-                                       const compress::Reflected& reflected,
+std::vector<double> relative_variances(const std::vector<ViewPdf>& densities, const compress::Reflected& reflected,
                                        const std::vector<compress::View>& views, std::uint32_t columns,
                                        std::uint32_t rows) {
     std::vector<std::vector<ViewAccuracy>> measured(densities.size(), std::vector<ViewAccuracy>(views.size()));
@@ -203,8 +202,7 @@ std::vector<double> relative_variances(const std::vector<ViewDensity>& densities
         for (std::size_t d = 0; d < densities.size(); ++d) measured[d][v] = sums[d].result();
     });
     std::vector<double> out;
-    for (const std::vector<ViewAccuracy>& of_density : measured)
-        out.push_back(summary(of_density).relative_variance);
+    for (const std::vector<ViewAccuracy>& of_pdf : measured) out.push_back(summary(of_pdf).relative_variance);
     return out;
 }
 
@@ -214,7 +212,7 @@ std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflec
     struct Place {
         double wi[3], measure;
     };
-    const StoredDensities stored(file);
+    const StoredPdfs stored(file);
     // The last one visited is its own mirror image where columns are odd.
     const std::uint32_t visited = sides == Sides::alike && stored.mirrored() ? (columns + 1) / 2 : columns;
     const auto images = [&](std::uint32_t c) { return visited == columns || 2 * c + 1 == columns ? 1u : 2u; };
@@ -259,7 +257,7 @@ ReflectedViews::ReflectedViews(const compress::Reflected& reflected, const std::
     });
 }
 
-double ReflectedViews::relative_variance(const ViewDensity& density) const {
+double ReflectedViews::relative_variance(const ViewPdf& density) const {
     std::vector<ViewAccuracy> out(views_.size());
     compress::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t v) {
         double wo[3];

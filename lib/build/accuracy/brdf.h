@@ -22,7 +22,7 @@ struct ViewAccuracy {
     double max_weight = 0.0;              ///< largest f/p over its mean
     double share_above_horizon = 0.0;     ///< of samples
     double integral = 0.0;                ///< of p over all directions, as summed: 1, but for what the grid misses
-    std::uint64_t support_violations = 0; ///< places with f > 0 and p = 0
+    std::uint64_t support_violations = 0; ///< points with f > 0 and p = 0
 };
 
 /// With the view that is worst.
@@ -31,20 +31,20 @@ struct BrdfAccuracy : builder::BrdfAccuracy {
 };
 
 /// What p is asked of: the density of wi for wo, in sr^-1. Called by several threads at once.
-using ViewDensity = std::function<double(const double wo[3], const double wi[3])>;
+using ViewPdf = std::function<double(const double wo[3], const double wi[3])>;
 
 /// `count` views with cos(theta_o) stratified and uniform in [low, high] and azimuths as random as a hash makes
 /// them: not those that are stored. The same for the same arguments.
 std::vector<compress::View> random_views(std::uint32_t count, bool isotropic, double low = 0.1, double high = 1.0);
 
 /// Sums over a grid of half-vectors, rows x columns, finer than any fit sees and not aligned with it, and over the
-/// same grid the part of samples that falls below the horizon: no samples are drawn. The density is taken to
+/// same grid the part of samples that falls below the horizon: no samples are taken. The density is taken to
 /// integrate to 1, and counts as if it did over the grid, too: what the grid misses of a narrow lobe would else be
 /// told as variance or as the lack of it.
 ///
 /// The defaults are the one grid of all figures that are told: of those in files, of `acdf brdf`, `measure` and
 /// `sweep`.
-std::vector<ViewAccuracy> measure_views(const ViewDensity& density, const compress::Reflected& reflected,
+std::vector<ViewAccuracy> measure_views(const ViewPdf& density, const compress::Reflected& reflected,
                                         const std::vector<compress::View>& views, std::uint32_t columns = 251,
                                         std::uint32_t rows = 601);
 
@@ -59,8 +59,7 @@ std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflec
 
 /// summary(measure_views(density, ...)).relative_variance of several densities, which throws alike: what is
 /// reflected is looked up once for all of them.
-std::vector<double> relative_variances(const std::vector<ViewDensity>& densities,
-                                       const compress::Reflected& reflected,
+std::vector<double> relative_variances(const std::vector<ViewPdf>& densities, const compress::Reflected& reflected,
                                        const std::vector<compress::View>& views, std::uint32_t columns = 251,
                                        std::uint32_t rows = 601);
 
@@ -71,7 +70,7 @@ public:
     ReflectedViews(const compress::Reflected& reflected, const std::vector<compress::View>& views,
                    std::uint32_t columns, std::uint32_t rows, std::size_t most_kept = std::size_t{1} << 25);
     /// That of summary(measure_views(density, ...)), which throws alike.
-    double relative_variance(const ViewDensity& density) const;
+    double relative_variance(const ViewPdf& density) const;
 
 private:
     compress::Reflected reflected_;

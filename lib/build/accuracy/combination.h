@@ -1,4 +1,4 @@
-// The noise of a file and its company together, by multiple importance sampling (Veach and Guibas, SIGGRAPH 1995).
+// The noise of a file and its partner together, by multiple importance sampling (Veach and Guibas, SIGGRAPH 1995).
 #pragma once
 
 #include "compress/sum.h"
@@ -19,8 +19,8 @@ inline double recommendable_share(std::size_t k) {
     return (double(k) + 1.0) / (double(recommendable_shares) + 1.0);
 }
 
-/// Sums over texels of an integrand f, for densities p of the file and b of its company. Of N samples a `share` is
-/// drawn from the file, the others from the company.
+/// Sums over texels of an integrand f, for densities p of the file and b of its partner. Of N samples a `share` is
+/// sampled from the file, the others from the partner.
 class Combination {
 public:
     Combination(double share, AcdfHeuristic heuristic) : share_(share), power_(heuristic == ACDF_HEURISTIC_POWER) {}

@@ -1,7 +1,7 @@
 #include "build/accuracy/environment.h"
 
 #include "build/accuracy/cells.h"
-#include "build/accuracy/company.h"
+#include "build/accuracy/partner.h"
 #include "build/accuracy/step_means.h"
 #include "build/accuracy/sums.h"
 #include "compress/parallel.h"
@@ -112,10 +112,10 @@ Sums sum_all(const Work& work, const Target& target, double total) {
 
 namespace {
 
-constexpr std::uint32_t kCompanyNormals = 64;
+constexpr std::uint32_t kPartnerNormals = 64;
 
 Accuracy measure_combined(const File& file, const Target& target) {
-    const CompanyAccuracy both = measure_beside_company(file, target, random_normals(kCompanyNormals));
+    const PartnerAccuracy both = measure_beside_partner(file, target, random_normals(kPartnerNormals));
     Accuracy a;
     a.combined = true;
     a.total = target.total > 0.0 ? target.total : integral(target);
@@ -162,7 +162,7 @@ Accuracy measure_alone(const EnvironmentView& environment, const Target& target)
 
 Accuracy measure_environment(const File& file, const Target& target) {
     require_same_grid(file, target);
-    if (file.company()) return measure_combined(file, target);
+    if (file.partner()) return measure_combined(file, target);
     return measure_alone(file.environment(), target);
 }
 

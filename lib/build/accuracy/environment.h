@@ -16,8 +16,8 @@ using Accuracy = builder::EnvironmentAccuracy;
 /// std::invalid_argument where the grids differ or the target has no energy.
 Accuracy measure_environment(const File& file, const compress::Target& target);
 
-/// The same of what points without a normal draw from in a local environment file: its environment(), used alone
-/// whatever the company of the file.
+/// The same of what points without a normal sample from in a local environment file: its environment(), used alone
+/// whatever the partner of the file.
 Accuracy measure_whole(const File& file, const compress::Target& target);
 
 } // namespace acdf::build

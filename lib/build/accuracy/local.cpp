@@ -131,8 +131,9 @@ private:
         std::vector<double> out(boxes_.size());
         if (source.what == ACDF_LOCAL_FAST) spread_sums(source, out);
         else spread(boxes_.size() > 1 ? 0 : ACDF_TILE_FLAG, source.mix, source.sum, out);
-        for (std::uint32_t k = 0; k < local_.light_count; ++k)
-            out[local_.lights[k].tile] = acdf_light_weight(&local_.lights[k], &source) / source.sum;
+        for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
+            out[local_.bright_tiles[k].tile] =
+                acdf_bright_tile_weight(&local_.bright_tiles[k], &source) / source.sum;
         return out;
     }
 
@@ -145,17 +146,17 @@ private:
     struct Row {
         const float* n;
         const TilePicture& picture;
-        /// Probabilities without the share around the normal; empty: nothing is drawn.
+        /// Probabilities without the share around the normal; empty: nothing is sampled.
         const std::vector<double>& tile;
-        double share;            ///< that is drawn around the normal
-        Combination both, rival; ///< with the company
+        double share;               ///< that is sampled around the normal
+        Combination both, baseline; ///< with the partner
         double largest = 0.0;
         std::uint64_t violations = 0;
     };
 
-    /// Of files that are drawn from alone, of the integrand g, without slopes and shares: most are.
+    /// Of files that are sampled from alone, of the integrand g, without slopes and shares: most are.
     bool is_plain(const Row& state) const {
-        return !local_.company && target_.means.empty() && target_.peaks.empty() && state.picture.slope.empty() &&
+        return !local_.partner && target_.means.empty() && target_.peaks.empty() && state.picture.slope.empty() &&
                state.share == 0.0 && !state.tile.empty();
     }
 
@@ -223,7 +224,7 @@ private:
         const double* const measures = target_.column_measure.data();
         const float* const values = target_.row(r);
         const double height = target_.row_measure[r], share = state.share;
-        const bool drawn = !state.tile.empty(), alone = !local_.company, means_differ = !target_.means.empty();
+        const bool sampled = !state.tile.empty(), alone = !local_.partner, means_differ = !target_.means.empty();
         const Slope* const slopes = state.picture.slope.empty() ? nullptr : state.picture.slope.data() + row;
         const float* const peaks = target_.peaks.empty() ? nullptr : target_.peaks.data() + row;
         // Copies, which compilers keep in registers.
@@ -231,7 +232,7 @@ private:
         std::uint64_t violations = 0;
         compress::ChannelSums irradiance;
         cosines_.for_each_above(state.n, r, [&](std::uint32_t c, double cosine) {
-            const double light_p = drawn ? probability[tiles[c]] * densities[c] : 0.0;
+            const double light_p = sampled ? probability[tiles[c]] * densities[c] : 0.0;
             const double rest = share > 0.0 ? share * cosine / ACDF_PI : 0.0, p = light_p + rest;
             const double omega = height * measures[c], g = values[c];
             first += light_p * omega;
@@ -249,7 +250,7 @@ private:
             if (!alone) {
                 for (std::size_t k = 0; k < channels; ++k) means[k] *= cosine;
                 state.both.add(f, means, channels, omega, p, cosine / ACDF_PI);
-                state.rival.add(f, means, channels, omega, g / total_, cosine / ACDF_PI);
+                state.baseline.add(f, means, channels, omega, g / total_, cosine / ACDF_PI);
                 return;
             }
             if (!(p > 0.0)) {
@@ -269,8 +270,8 @@ private:
 
     NormalAccuracy sum(const float n[3], const TilePicture& picture, std::vector<double> tile) const {
         NormalAccuracy out;
-        const bool drawn = !tile.empty(), alone = !local_.company;
-        const double share = drawn ? double{local_.cosine_share} : 0.0;
+        const bool sampled = !tile.empty(), alone = !local_.partner;
+        const double share = sampled ? double{local_.cosine_share} : 0.0;
         for (double& probability : tile) probability *= 1.0 - share;
         Row state{n, picture, tile, share, no_combination(), no_combination()};
         std::vector<double> cosines(is_plain(state) ? target_.columns : 0);
@@ -292,14 +293,14 @@ private:
         const double mean = target_.means.empty() ? e : irradiance.length();
         out.relative_variance = out.support_violations > 0 ? std::numeric_limits<double>::infinity()
                                                            : std::max(0.0, second.value() / mean / mean - 1.0);
-        // What is drawn around the normal lies above its horizon, all of it.
-        out.share_above_horizon = drawn ? std::min(first_above.value() + share, 1.0) : 0.0;
+        // What is sampled around the normal lies above its horizon, all of it.
+        out.share_above_horizon = sampled ? std::min(first_above.value() + share, 1.0) : 0.0;
         out.max_weight = state.largest / mean;
         out.relative_variance_full_cdf = std::max(0.0, total_ / mean * (light_second.value() / mean) - 1.0);
         out.share_above_horizon_full_cdf = light.value() / total_;
         if (alone) return out;
         out.relative_variance = state.both.relative_variance();
-        out.relative_variance_full_cdf = state.rival.relative_variance();
+        out.relative_variance_full_cdf = state.baseline.relative_variance();
         out.support_violations = state.both.violations();
         out.max_weight = state.both.max_weight();
         out.combined = true;
@@ -307,8 +308,8 @@ private:
     }
 
     Combination no_combination() const {
-        if (!local_.company) return {0.5, ACDF_HEURISTIC_BALANCE};
-        return {double{local_.company->share}, static_cast<AcdfHeuristic>(local_.company->heuristic)};
+        if (!local_.partner) return {0.5, ACDF_HEURISTIC_BALANCE};
+        return {double{local_.partner->share}, static_cast<AcdfHeuristic>(local_.partner->heuristic)};
     }
 
     const File& file_;

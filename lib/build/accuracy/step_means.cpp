@@ -32,7 +32,7 @@ void range_means(const AcdfRange& range, const std::vector<double>& measure, std
     compress::Sum t;
     for (std::uint32_t i = range.low; i < range.high; ++i) {
         t.add(measure[i] / length.value());
-        const double next = acdf_tilt_density(range.tilt, std::min(1.0, t.value()));
+        const double next = acdf_tilt_pdf(range.tilt, std::min(1.0, t.value()));
         out[i - range.low] = step_means(g, next);
         g = next;
     }

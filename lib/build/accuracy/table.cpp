@@ -133,7 +133,7 @@ BinAccuracy measure_bin(const File& file, std::uint32_t index, const Grid& grid)
         a.kl_divergence = std::max(0.0, sums.kl.value());
         a.max_weight = sums.max_weight;
     } else {
-        a.support_violations = positive_values(grid); // nothing is ever drawn here
+        a.support_violations = positive_values(grid); // nothing is ever sampled here
     }
     if (a.support_violations > 0) a.relative_variance = a.kl_divergence = a.max_weight = kInfinite;
     return a;

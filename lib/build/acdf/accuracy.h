@@ -20,7 +20,7 @@ struct EnvironmentAccuracy {
     std::uint64_t support_violations = 0; ///< texels with f > 0 and p = 0
     std::uint64_t cells = 0;
     double total = 0.0; ///< integral of f
-    /// The file has a company: relative_variance, max_weight and support_violations are those of estimates of
+    /// The file has an MIS partner: relative_variance, max_weight and support_violations are those of estimates of
     /// irradiance from both together, mean over normals; the variance is that of N samples in the fit's shares,
     /// times N. least_variance, rms_pdf_error and kl_divergence are 0.
     bool combined = false;
@@ -36,8 +36,8 @@ struct LocalAccuracy {
     double max_weight = 0.0;              ///< largest f/p over its mean
     std::uint64_t support_violations = 0; ///< texels with f > 0 and p = 0
     std::uint32_t lit_normals = 0;
-    /// The file has a company: variances, weights and violations are those of both together, the variance that of N
-    /// samples in the fit's shares, times N; that of the full CDF the same, in the place of the file.
+    /// The file has an MIS partner: variances, weights and violations are those of both together, the variance that
+    /// of N samples in the fit's shares, times N; that of the full CDF the same, in the place of the file.
     bool combined = false;
 };
 

@@ -161,14 +161,14 @@ private:
 };
 
 /// What a file is to be combined with, by multiple importance sampling. Such a file has no density where the
-/// company is enough: it is not to be used alone, and says so (needs_company of its view).
-struct Company {
-    /// ACDF_COMPANY_COSINE: cos / pi around the normal; _BRDF: lobes as BRDFs have them; _MEAN: as if the company
+/// partner is enough: it is not to be used alone, and says so (requires_mis of its view).
+struct Partner {
+    /// ACDF_PARTNER_COSINE: cos / pi around the normal; _BRDF: lobes as BRDFs have them; _MEAN: as if the partner
     /// were the same everywhere (Karlik et al. 2019), of environments alone; _TABLE: another table, of tables
     /// alone.
-    AcdfCompanyKind kind = ACDF_COMPANY_NONE;
+    AcdfPartnerKind kind = ACDF_PARTNER_NONE;
     AcdfHeuristic heuristic = ACDF_HEURISTIC_BALANCE;
-    double light = 1.0, other = 1.0; ///< samples of the file and of the company, in proportion; in [1e-3, 1e3]
+    double light = 1.0, other = 1.0; ///< samples of the file and of the partner, in proportion; in [1e-3, 1e3]
 };
 
 /// A normal of a scene, of any length > 0, and how often it occurs, > 0.
@@ -182,8 +182,8 @@ struct EnvironmentOptions {
     TargetOptions target; ///< of pixels and rows; a Target has its own
     Goal goal;            ///< cells: in all, about 4.2 bytes each; variance: up to 16 MiB. Of the variance fit only
     FitOptions fit;
-    Company company;                  ///< of the variance fit as a tree, without max_weight or a goal of variance
-    std::vector<SceneNormal> normals; ///< that the company lights; empty: all normals
+    Partner mis;                      ///< of the variance fit as a tree, without max_weight or a goal of variance
+    std::vector<SceneNormal> normals; ///< that the partner lights; empty: all normals
     std::string normals_text;         ///< as in LocalOptions
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;
@@ -214,15 +214,15 @@ enum class BinTarget {
 /// How bins that share tiles are stored.
 enum class LocalShape {
     small, ///< least noise for its bytes
-    fast,  ///< grids in tiles and sums in rows, which are searched by vectors: draws and densities take 0.6 of the
-           ///< time
+    fast, ///< grids in tiles and sums in rows, which are searched by vectors: samples and densities take 0.6 of the
+          ///< time
     automatic ///< both are made: fast where its variance and its size are at most 1.15 times those of small, for
               ///< then it has no more noise after the same time (of those that reach a variance: where it is no
               ///< larger); small where that fails, or options ask for what fast has not
 };
 
 /// A point of a scene where light is gathered: on a surface, or in the air.
-struct PlacePoint {
+struct VisibilityPoint {
     float position[3] = {}, normal[3] = {0.0f, 0.0f, 1.0f};
 };
 
@@ -235,18 +235,18 @@ struct Portal {
 /// What of the light reaches which place of a scene. Both callbacks are called by several threads at once, and tell
 /// the same for the same arguments: the file is then the same for any number of threads. A point must not lie on
 /// what hides light from it, but a little above.
-struct Places {
+struct Visibility {
     /// Point `index` of an endless sequence all over the scene, any of which is about as even; false where that
     /// number has none.
-    std::function<bool(std::uint64_t index, PlacePoint& point)> point;
+    std::function<bool(std::uint64_t index, VisibilityPoint& point)> point;
     /// Whether anything lies on the ray from a point towards a direction, in the frame of directions.
-    std::function<bool(const PlacePoint& point, const float direction[3])> occluded;
+    std::function<bool(const VisibilityPoint& point, const float direction[3])> occluded;
     /// From the scene's coordinates, in which a renderer tells positions, to those of points here, a row a
     /// coordinate: x' = t[0] x + t[1] y + t[2] z + t[3].
     float transform[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
-    /// Windows and doors that light comes through, at most 8: samples are drawn through them, exactly, and by the
-    /// rows of places for all that comes in another way. With them `transform` turns, mirrors, moves and scales as
-    /// a whole, to the frame of directions.
+    /// Windows and doors that light comes through, at most 8: samples are taken through them, exactly, and by the
+    /// rows of visibility cells for all that comes in another way. With them `transform` turns, mirrors, moves and
+    /// scales as a whole, to the frame of directions.
     std::vector<Portal> portals;
 };
 
@@ -259,16 +259,18 @@ struct LocalOptions {
     std::uint32_t tiles = 0;              ///< up to ACDF_MAX_TILES; 0: as suits the size
     double max_weight = 0.0;              ///< with sharing: the largest measured weight, as FitOptions; 0: no bound
     std::vector<SceneNormal> normals;     ///< only what a scene has; empty: all normals
-    double cosine_share = 0.0;            ///< of samples that are drawn around the normal instead, in [0, 0.99]
+    double cosine_share = 0.0;            ///< of samples that are taken around the normal instead, in [0, 0.99]
     bool sharing = true;                  ///< bins share tiles; else each has a tree of its own, larger and noisier
-    LocalShape shape = LocalShape::automatic; ///< fast: with sharing, without max_weight, a company and places
-    BinTarget bin_target = BinTarget::mean;   ///< without sharing
-    FitOptions fit;                           ///< of a bin's tree, without sharing
-    Company company;                          ///< of bins that share tiles, without a cosine_share
+    LocalShape shape =
+        LocalShape::automatic; ///< fast: with sharing, without max_weight, an MIS partner and visibility
+    BinTarget bin_target = BinTarget::mean; ///< without sharing
+    FitOptions fit;                         ///< of a bin's tree, without sharing
+    Partner mis;                            ///< of bins that share tiles, without a cosine_share
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;
     std::string normals_text; ///< what fit.options tells of `normals`; empty: that there are some
-    Places places; ///< both callbacks: bins share tiles, the goal is a budget, and places take more than half of it
+    Visibility visibility;    ///< both callbacks: bins share tiles, the goal is a budget, and visibility cells take
+                              ///< more than half of it
 };
 
 /// The file of a local environment, and what is known of it.
@@ -364,7 +366,7 @@ struct TableOptions {
     Goal goal = Goal::of_cells(0);                 ///< cells: a bin, on average; 0: 4096 in all, at least 64 a bin
     double max_weight = 0.0;                       ///< the largest f/p over its mean, at least 1; 0: no bound
     bool bad_as_zero = false;                      ///< bad numbers count as 0, else ErrorCode::bad_source
-    Company company;                               ///< ACDF_COMPANY_TABLE, without max_weight or a goal of variance
+    Partner mis;                                   ///< ACDF_PARTNER_TABLE, without max_weight or a goal of variance
     Array other;                                   ///< that table, of the same shape; each bin has its own density
     Source other_source;                           ///< name and sha256
     AcdfCodec codec = ACDF_CODEC_NONE;

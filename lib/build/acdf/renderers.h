@@ -1,5 +1,5 @@
 // Renderers of which it is known how they look an environment map up: the options that suit each, and the axes of
-// its light. `acdf env --for NAME` uses the same table; docs/conventions.md says where each line is read off.
+// its light. `acdf env --for NAME` uses the same table; docs/notes/conventions.md says where each line is read off.
 //
 //     if (const acdf::builder::Renderer* cycles = acdf::builder::find_renderer("cycles")) {
 //         options.target = cycles->target;
@@ -48,10 +48,10 @@ struct Renderer {
     const Axes* axes_of(Projection projection) const noexcept;
     /// The kind of file that has the least noise there: ACDF_KIND_LOCAL or ACDF_KIND_ENVIRONMENT.
     AcdfKind kind() const noexcept;
-    /// The MIS partner that suits a file of these options, with the heuristic; kind ACDF_COMPANY_NONE where the
+    /// The MIS partner that suits a file of these options, with the heuristic; kind ACDF_PARTNER_NONE where the
     /// file may be used alone, or its options go without a partner. A file for a partner may not be used alone.
-    Company company(const EnvironmentOptions& options) const noexcept;
-    Company company(const LocalOptions& options) const noexcept;
+    Partner partner(const EnvironmentOptions& options) const noexcept;
+    Partner partner(const LocalOptions& options) const noexcept;
 };
 
 /// A range of them.

@@ -84,12 +84,12 @@ void check(const SceneNormal& n) {
     require(n.weight > 0.0 && n.weight <= 1e100, "the weight of a normal is not positive, or above 1e100");
 }
 
-void check(const Company& company, AcdfCompanyKind most) {
-    require(company.kind >= ACDF_COMPANY_NONE && company.kind <= most, "company.kind is none of those of the file");
-    require(company.heuristic == ACDF_HEURISTIC_BALANCE || company.heuristic == ACDF_HEURISTIC_POWER,
-            "company.heuristic is no AcdfHeuristic");
-    for (const double share : {company.light, company.other})
-        require(share >= 1e-3 && share <= 1e3, "a share of the company is not in [0.001, 1000]");
+void check(const Partner& partner, AcdfPartnerKind most) {
+    require(partner.kind >= ACDF_PARTNER_NONE && partner.kind <= most, "mis.kind is none of those of the file");
+    require(partner.heuristic == ACDF_HEURISTIC_BALANCE || partner.heuristic == ACDF_HEURISTIC_POWER,
+            "mis.heuristic is no AcdfHeuristic");
+    for (const double share : {partner.light, partner.other})
+        require(share >= 1e-3 && share <= 1e3, "a share of the partner is not in [0.001, 1000]");
 }
 
 void check_bins(const LocalOptions& options) {
@@ -103,20 +103,20 @@ void check_bins(const LocalOptions& options) {
     require(options.tiles == 0 || options.sharing, "tiles is for bins that share them");
     check_max_weight(options.max_weight);
     require(options.max_weight == 0.0 ||
-                (options.sharing && !options.places.point && options.company.kind == ACDF_COMPANY_NONE),
-            "max_weight is for bins that share tiles, without places or a company");
+                (options.sharing && !options.visibility.point && options.mis.kind == ACDF_PARTNER_NONE),
+            "max_weight is for bins that share tiles, without visibility cells or an MIS partner");
     require(options.shape == LocalShape::small || options.shape == LocalShape::fast ||
                 options.shape == LocalShape::automatic,
             "shape is no LocalShape");
     require(options.shape != LocalShape::fast || may_be_fast(options),
-            "the fast shape is for bins that share tiles, without max_weight, places or a company");
+            "the fast shape is for bins that share tiles, without max_weight, visibility cells or an MIS partner");
 }
 
 } // namespace
 
 bool may_be_fast(const LocalOptions& options) {
-    return options.sharing && options.max_weight == 0.0 && !options.places.point &&
-           options.company.kind == ACDF_COMPANY_NONE;
+    return options.sharing && options.max_weight == 0.0 && !options.visibility.point &&
+           options.mis.kind == ACDF_PARTNER_NONE;
 }
 
 void check(const TargetOptions& options) {
@@ -136,14 +136,14 @@ void check(const EnvironmentOptions& options) {
     check(options.fit);
     check(options.codec);
     check(options.source);
-    check(options.company, ACDF_COMPANY_MEAN);
+    check(options.mis, ACDF_PARTNER_MEAN);
     for (const SceneNormal& n : options.normals) check(n);
     check_text(options.normals_text);
-    const bool alone = options.company.kind == ACDF_COMPANY_NONE;
+    const bool alone = options.mis.kind == ACDF_PARTNER_NONE;
     require(alone || (options.fit.fit == ACDF_FIT_VARIANCE && options.fit.max_weight == 0.0 &&
                       options.goal.kind != Goal::Kind::variance),
-            "a company is for the variance fit, without max_weight, of a number of cells or a budget");
-    require(!alone || options.normals.empty(), "normals of an environment are those that its company lights");
+            "an MIS partner is for the variance fit, without max_weight, of a number of cells or a budget");
+    require(!alone || options.normals.empty(), "normals of an environment are those that its partner lights");
     if (options.fit.fit != ACDF_FIT_VARIANCE) return;
     require(options.fit.order == Order::best, "order is for the fits cdf, pdf and uniform");
     check(options.goal, 1);
@@ -160,22 +160,24 @@ static bool keeps_angles(const float t[3][4]) {
            std::fabs(dot(0, 1)) <= most && std::fabs(dot(0, 2)) <= most && std::fabs(dot(1, 2)) <= most;
 }
 
-static void check_places(const LocalOptions& options) {
-    require(!options.places.point == !options.places.occluded, "places need both callbacks, or none");
-    require(options.places.point || options.places.portals.empty(), "portals are for files with places");
-    if (!options.places.point) return;
-    require(options.sharing, "places are for bins that share tiles");
-    require(options.goal.kind == Goal::Kind::budget, "the goal of places is a budget");
-    for (const auto& row : options.places.transform)
-        for (const float t : row) require(std::isfinite(t), "the transform of places is not finite");
-    require(options.places.portals.empty() || keeps_angles(options.places.transform),
-            "with portals, the transform of places must keep angles");
-    require(options.places.portals.size() <= ACDF_MAX_PORTALS, "there are more than 8 portals");
+static void check_visibility(const LocalOptions& options) {
+    require(!options.visibility.point == !options.visibility.occluded,
+            "visibility cells need both callbacks, or none");
+    require(options.visibility.point || options.visibility.portals.empty(),
+            "portals are for files with visibility cells");
+    if (!options.visibility.point) return;
+    require(options.sharing, "visibility cells are for bins that share tiles");
+    require(options.goal.kind == Goal::Kind::budget, "the goal of visibility cells is a budget");
+    for (const auto& row : options.visibility.transform)
+        for (const float t : row) require(std::isfinite(t), "the transform of visibility cells is not finite");
+    require(options.visibility.portals.empty() || keeps_angles(options.visibility.transform),
+            "with portals, the transform of visibility cells must keep angles");
+    require(options.visibility.portals.size() <= ACDF_MAX_PORTALS, "there are more than 8 portals");
 }
 
 void check(const LocalOptions& options) {
     check_bins(options);
-    check_places(options);
+    check_visibility(options);
     for (const SceneNormal& n : options.normals) check(n);
     require(is_share(options.cosine_share, 0.99), "cosine_share is not in [0, 0.99]");
     require(options.bin_target == BinTarget::mean || options.bin_target == BinTarget::centre,
@@ -183,9 +185,9 @@ void check(const LocalOptions& options) {
     check(options.codec);
     check(options.source);
     check_text(options.normals_text);
-    check(options.company, ACDF_COMPANY_BRDF);
-    require(options.company.kind == ACDF_COMPANY_NONE || (options.sharing && options.cosine_share == 0.0),
-            "a company is for bins that share tiles, and takes the place of a cosine_share");
+    check(options.mis, ACDF_PARTNER_BRDF);
+    require(options.mis.kind == ACDF_PARTNER_NONE || (options.sharing && options.cosine_share == 0.0),
+            "an MIS partner is for bins that share tiles, and takes the place of a cosine_share");
     if (!options.sharing) check(options.fit);
     if (!options.sharing && options.fit.fit != ACDF_FIT_VARIANCE) return;
     check(options.goal, options.sharing ? 16 : 1);
@@ -221,12 +223,12 @@ void check(const TableOptions& options) {
     for (const std::string& name : options.names)
         require(is_text(name, 15), "the name of an axis is not UTF-8 or has more than 15 bytes");
     check(options.other_source);
-    const bool alone = options.company.kind == ACDF_COMPANY_NONE;
-    require(alone || options.company.kind == ACDF_COMPANY_TABLE, "the company of a table is another table");
-    check(options.company, ACDF_COMPANY_TABLE);
+    const bool alone = options.mis.kind == ACDF_PARTNER_NONE;
+    require(alone || options.mis.kind == ACDF_PARTNER_TABLE, "the partner of a table is another table");
+    check(options.mis, ACDF_PARTNER_TABLE);
     require(alone || (options.max_weight == 0.0 && options.goal.kind != Goal::Kind::variance),
-            "a company is for a number of cells or a budget, without max_weight");
-    require(alone == (options.other.data == nullptr), "company.kind and the other table are given together");
+            "an MIS partner is for a number of cells or a budget, without max_weight");
+    require(alone == (options.other.data == nullptr), "mis.kind and the other table are given together");
 }
 
 } // namespace acdf::builder

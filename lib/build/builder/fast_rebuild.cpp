@@ -82,7 +82,7 @@ void require_fast(const EnvironmentOptions& options, Projection projection) {
             "quality fast makes the variance fit without max_weight; choose quality best");
     require(options.goal.kind != Goal::Kind::variance,
             "quality fast has no goal of variance; give a budget or cells, or choose quality best");
-    require(internal(options).company.kind == ACDF_COMPANY_NONE && options.codec == ACDF_CODEC_NONE,
+    require(options.mis.kind == ACDF_PARTNER_NONE && options.codec == ACDF_CODEC_NONE,
             "quality fast makes uncompressed files without an MIS partner; choose quality best");
     const Domain own = projection == Projection::octahedral ? Domain::octahedral : Domain::latlong;
     require(options.target.domain == Domain::source || options.target.domain == own,

@@ -39,8 +39,8 @@ compress::FitOptions internal(const FitOptions& options) {
     return out;
 }
 
-compress::Company internal(const Company& company) {
-    return {company.kind, company.heuristic, company.light, company.other};
+compress::Partner internal(const Partner& partner) {
+    return {partner.kind, partner.heuristic, partner.light, partner.other};
 }
 
 std::vector<compress::SceneNormal> internal(const std::vector<SceneNormal>& normals) {
@@ -76,7 +76,7 @@ build::EnvironmentOptions internal(const EnvironmentOptions& options) {
     out.fit = internal(options.fit);
     out.fit.goal = internal(options.goal);
     out.codec = options.codec;
-    out.company = internal(options.company);
+    out.mis = internal(options.mis);
     out.scene = internal(options.normals);
     out.scene_text = options.normals_text;
     return out;
@@ -103,14 +103,15 @@ bool called(const Call& call) {
     }
 }
 
-PlacePoint external(const compress::PlacePoint& point) {
-    PlacePoint out;
+VisibilityPoint external(const compress::VisibilityPoint& point) {
+    VisibilityPoint out;
     std::copy_n(point.position.begin(), 3, out.position);
     std::copy_n(point.normal.begin(), 3, out.normal);
     return out;
 }
 
-/// Among the cells. Where the transform mirrors, the sides change places, so that light comes from where it did.
+/// Among the cells. Where the transform mirrors, the sides change visibility, so that light comes from where it
+/// did.
 compress::PortalRectangle internal(const Portal& portal, const float transform[3][4]) {
     compress::PortalRectangle out;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -126,23 +127,23 @@ compress::PortalRectangle internal(const Portal& portal, const float transform[3
     return out;
 }
 
-build::ScenePlaces internal(const Places& places) {
-    build::ScenePlaces out;
-    if (!places.point) return out;
-    out.scene.points = [point = places.point](std::uint64_t index, compress::PlacePoint& result) {
-        PlacePoint told;
+build::SceneVisibility internal(const Visibility& visibility) {
+    build::SceneVisibility out;
+    if (!visibility.point) return out;
+    out.scene.points = [point = visibility.point](std::uint64_t index, compress::VisibilityPoint& result) {
+        VisibilityPoint told;
         if (!called([&] { return point(index, told); })) return false;
         std::copy_n(told.position, 3, result.position.begin());
         std::copy_n(told.normal, 3, result.normal.begin());
         return true;
     };
-    out.scene.occluded = [occluded = places.occluded](const compress::PlacePoint& point,
-                                                      const std::array<float, 3>& direction) {
-        const PlacePoint told = external(point);
+    out.scene.occluded = [occluded = visibility.occluded](const compress::VisibilityPoint& point,
+                                                          const std::array<float, 3>& direction) {
+        const VisibilityPoint told = external(point);
         return called([&] { return occluded(told, direction.data()); });
     };
-    for (int k = 0; k < 3; ++k) std::copy_n(places.transform[k], 4, out.frame.transform[k]);
-    for (const Portal& portal : places.portals) out.portals.push_back(internal(portal, places.transform));
+    for (int k = 0; k < 3; ++k) std::copy_n(visibility.transform[k], 4, out.frame.transform[k]);
+    for (const Portal& portal : visibility.portals) out.portals.push_back(internal(portal, visibility.transform));
     return out;
 }
 
@@ -158,7 +159,7 @@ build::LocalOptions internal(const LocalOptions& options) {
     out.tiles = options.tiles;
     out.max_weight = options.max_weight;
     out.scene = internal(options.normals);
-    out.company = internal(options.company);
+    out.mis = internal(options.mis);
     out.sharing = options.sharing;
     out.shape = options.shape == LocalShape::fast ? compress::LocalShape::fast : compress::LocalShape::small;
     out.shape_from = !may_be_fast(options)                    ? build::ShapeFrom::necessity
@@ -171,7 +172,7 @@ build::LocalOptions internal(const LocalOptions& options) {
     if (!out.sharing && out.fit.fit != ACDF_FIT_VARIANCE && !out.fit.order) out.fit.order = compress::Order::z;
     out.cosine_share = options.cosine_share;
     out.scene_text = options.normals_text;
-    out.places = internal(options.places);
+    out.visibility = internal(options.visibility);
     out.codec = options.codec;
     return out;
 }
@@ -202,7 +203,7 @@ build::TableOptions internal(const TableOptions& options) {
     out.cells = options.goal.cells;
     out.fit.goal = internal(options.goal);
     out.fit.max_weight = options.max_weight;
-    out.company = internal(options.company);
+    out.mis = internal(options.mis);
     out.other_name = options.other_source.name;
     out.other_sha256 = options.other_source.sha256;
     out.codec = options.codec;

@@ -98,7 +98,7 @@ constexpr Renderer known[] = {
      false,
      false,
      ACDF_HEURISTIC_BALANCE,
-     "it filters the map and draws no samples, so that the file serves other programs of that frame, alone"},
+     "it filters the map and takes no samples, so that the file serves other programs of that frame, alone"},
     {"unreal",
      latlong(Wrap::clamp),
      {-2, -1, 3},
@@ -145,23 +145,23 @@ AcdfKind Renderer::kind() const noexcept { return has_normal ? ACDF_KIND_LOCAL :
 
 // Made for all normals alike, an environment beside a cosine counts surfaces that face away from the light as much
 // as those that are seen: without a scene the mean does better (docs/integrate.md).
-Company Renderer::company(const EnvironmentOptions& options) const noexcept {
+Partner Renderer::partner(const EnvironmentOptions& options) const noexcept {
     const FitOptions& fit = options.fit;
-    Company out;
+    Partner out;
     if (!adds_bsdf_samples || fit.fit != ACDF_FIT_VARIANCE || fit.max_weight > 0.0 ||
         options.goal.kind == Goal::Kind::variance)
         return out;
-    out.kind = options.normals.empty() ? ACDF_COMPANY_MEAN : ACDF_COMPANY_COSINE;
+    out.kind = options.normals.empty() ? ACDF_PARTNER_MEAN : ACDF_PARTNER_COSINE;
     out.heuristic = heuristic;
     return out;
 }
 
-Company Renderer::company(const LocalOptions& options) const noexcept {
-    Company out;
+Partner Renderer::partner(const LocalOptions& options) const noexcept {
+    Partner out;
     if (!adds_bsdf_samples || !options.sharing || options.cosine_share > 0.0 || options.max_weight > 0.0 ||
-        options.shape == LocalShape::fast || options.places.point)
+        options.shape == LocalShape::fast || options.visibility.point)
         return out;
-    out.kind = ACDF_COMPANY_COSINE;
+    out.kind = ACDF_PARTNER_COSINE;
     out.heuristic = heuristic;
     return out;
 }

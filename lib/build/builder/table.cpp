@@ -15,12 +15,12 @@ Table make(const build::Array& array, const BadNumbers& bad, const TableOptions&
            const build::Progress& progress) {
     build::TableOptions asked = internal(options);
     build::Array other;
-    if (options.company.kind != ACDF_COMPANY_NONE) {
+    if (options.mis.kind != ACDF_PARTNER_NONE) {
         check(options.other);
         BadNumbers bad_other;
         other = to_floats(options.other, bad_other);
         if (bad_other.count() > 0 && !options.bad_as_zero)
-            throw std::invalid_argument("the company: " + build::text(bad_other, other.shape));
+            throw std::invalid_argument("the partner: " + build::text(bad_other, other.shape));
         asked.other = &other;
     }
     build::Table made = build::build_table(array, options.source.name, options.source.sha256, asked, progress);

@@ -11,15 +11,15 @@
 namespace acdf::build {
 namespace {
 
-TexelPlace repeated(const Map& map, int column, int row) {
+TexelPosition repeated(const Map& map, int column, int row) {
     return {(column + map.width) % map.width, (row + map.height) % map.height};
 }
 
-TexelPlace beside_on_latlong(const Map& map, int column, int row) {
+TexelPosition beside_on_latlong(const Map& map, int column, int row) {
     return {(column + map.width) % map.width, std::clamp(row, 0, map.height - 1)};
 }
 
-TexelPlace beside_on_square(const Map& map, int column, int row) {
+TexelPosition beside_on_square(const Map& map, int column, int row) {
     if (column < 0 || column >= map.width) {
         column = column < 0 ? -1 - column : 2 * map.width - 1 - column;
         row = map.height - 1 - row;
@@ -84,7 +84,7 @@ struct Patch {
 };
 
 /// Over an edge the plane of the face is prolonged: what lies there is on the face that it looks at.
-TexelPlace beside_on_cube(const Map& map, int from_column, int from_row, int column, int row) {
+TexelPosition beside_on_cube(const Map& map, int from_column, int from_row, int column, int row) {
     const int n = cube_face_size(map);
     if (column / n == from_column / n && row / n == from_row / n && column >= 0 && row >= 0) return {column, row};
     if (map.layout == Layout::stacked_cube) { // centres lie on the edges: nothing is looked up beyond
@@ -102,7 +102,7 @@ TexelPlace beside_on_cube(const Map& map, int from_column, int from_row, int col
 
 } // namespace
 
-TexelPlace texel_beside(const Map& map, int from_column, int from_row, int column, int row) {
+TexelPosition texel_beside(const Map& map, int from_column, int from_row, int column, int row) {
     const bool flat =
         map.layout == Layout::latlong || map.layout == Layout::angular || map.layout == Layout::mirrorball;
     if (map.repeats && flat) return repeated(map, column, row);
@@ -145,8 +145,8 @@ LookupMoments SourceLookup::moments(int column, int row, const Polygon& polygon)
     // The first half of a texel lies between the centre before it and its own, the second between that and the
     // next.
     const int x = column / 2, y = row / 2, x0 = x - 1 + column % 2, y0 = y - 1 + row % 2;
-    const TexelPlace at[4] = {texel_beside(map_, x, y, x0, y0), texel_beside(map_, x, y, x0 + 1, y0),
-                              texel_beside(map_, x, y, x0, y0 + 1), texel_beside(map_, x, y, x0 + 1, y0 + 1)};
+    const TexelPosition at[4] = {texel_beside(map_, x, y, x0, y0), texel_beside(map_, x, y, x0 + 1, y0),
+                                 texel_beside(map_, x, y, x0, y0 + 1), texel_beside(map_, x, y, x0 + 1, y0 + 1)};
     for (std::uint32_t plane = 0; plane < planes_; ++plane) {
         const Patch patch{{value(plane, at[0]), value(plane, at[1]), value(plane, at[2]), value(plane, at[3])},
                           x0 + 0.5,

@@ -15,10 +15,10 @@ namespace acdf::build {
 /// face that holds the texel (`from_column`, `from_row`): lat-long maps wrap at the seam and stop at the poles,
 /// octahedral ones go on across the sides, cubes on the next face; discs stop at the image. Where `map.repeats`,
 /// lat-long maps and discs go on at the opposite border instead of stopping.
-struct TexelPlace {
+struct TexelPosition {
     int column = 0, row = 0;
 };
-TexelPlace texel_beside(const Map& map, int from_column, int from_row, int column, int row);
+TexelPosition texel_beside(const Map& map, int from_column, int from_row, int column, int row);
 
 /// f over a part of a texel, summed over the channels that count: mean of each, mean of the sum of squares,
 /// largest.
@@ -43,7 +43,7 @@ public:
     LookupMoments moments(int column, int row, const Polygon& polygon) const;
 
 private:
-    double value(std::uint32_t plane, const TexelPlace& at) const {
+    double value(std::uint32_t plane, const TexelPosition& at) const {
         return values_[(std::size_t{plane} * static_cast<std::size_t>(map_.height) +
                         static_cast<std::size_t>(at.row)) *
                            static_cast<std::size_t>(map_.width) +

@@ -221,7 +221,7 @@ private:
                 if (values[i] > 0.0f) continue;
                 float largest = 0.0f;
                 for (int k = 0; k < 9; ++k) {
-                    const TexelPlace at = texel_beside(grid, column, row, column + k % 3 - 1, row + k / 3 - 1);
+                    const TexelPosition at = texel_beside(grid, column, row, column + k % 3 - 1, row + k / 3 - 1);
                     largest = std::max(largest, values[static_cast<std::size_t>(at.row) * domain_.columns +
                                                        static_cast<std::size_t>(at.column)]);
                 }

@@ -30,7 +30,7 @@ HorizonSquares look_at_horizon(const Reflected& reflected, BrdfViews& views);
 class WeightBound {
 public:
     /// `cell` of each square, of `cells`; A view needs what its neighbours need, too, as
-    /// views between them are drawn from the same rows.
+    /// views between them are sampled from the same rows.
     WeightBound(const BrdfViews& views, const HorizonSquares& horizon, const std::vector<std::uint32_t>& cell,
                 std::size_t cells, double max_weight);
 

@@ -11,7 +11,7 @@ namespace {
 // A split into k parts is worth its gain per knot, but not quite: with half a knot on top, a bright spot is cut
 // out by two knots at once even where the first one alone gains little more per knot.
 constexpr double kKnotOffset = 0.5;
-// Of the cost of the whole. Where each slice is left to the company no border is better than any other, though what
+// Of the cost of the whole. Where each slice is left to the partner no border is better than any other, though what
 // lies within the slices may differ.
 constexpr double kNoGain = 1e-12;
 
@@ -22,25 +22,25 @@ struct LastJoins {
     std::size_t count = 0;
 };
 
-template <bool Company>
+template <bool Partner>
 LastJoins join_slices(const Slices& slices, DivisionScratch& s) {
     const std::size_t n = slices.size();
     s.measure = slices.measure;
     s.energy = slices.energy;
-    if (Company) s.left = slices.left;
-    const auto cost = [](double alone, double left) { return Company ? cell_cost(alone, left) : alone; };
+    if (Partner) s.left = slices.left;
+    const auto cost = [](double alone, double left) { return Partner ? cell_cost(alone, left) : alone; };
     s.alone.resize(n);
     s.joined.resize(n);
     double total = 0.0;
     for (std::size_t i = 0; i < n; ++i)
-        total += s.alone[i] = cost(std::sqrt(s.measure[i] * s.energy[i]), Company ? s.left[i] : 0.0);
+        total += s.alone[i] = cost(std::sqrt(s.measure[i] * s.energy[i]), Partner ? s.left[i] : 0.0);
     LastJoins last;
     std::size_t left = n - 1;
     join_neighbours(
         n, left,
         [&](std::size_t a, std::size_t b) {
             s.joined[a] = cost(std::sqrt((s.measure[a] + s.measure[b]) * (s.energy[a] + s.energy[b])),
-                               Company ? s.left[a] + s.left[b] : 0.0);
+                               Partner ? s.left[a] + s.left[b] : 0.0);
             return s.joined[a] - s.alone[a] - s.alone[b];
         },
         [&](std::size_t a, std::size_t b, double raise) {
@@ -51,7 +51,7 @@ LastJoins join_slices(const Slices& slices, DivisionScratch& s) {
             total += raise;
             s.measure[a] += s.measure[b];
             s.energy[a] += s.energy[b];
-            if (Company) s.left[a] += s.left[b];
+            if (Partner) s.left[a] += s.left[b];
             s.alone[a] = s.joined[a];
         });
     return last;

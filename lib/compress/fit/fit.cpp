@@ -17,7 +17,7 @@ Cascade fit_two_levels(const Target& target, const FitOptions& options) {
 }
 
 /// The trees are fitted to g. What the options say of f, relative to f's mean, is so translated.
-FitOptions of_best_density(const Target& target, FitOptions options) {
+FitOptions of_best_pdf(const Target& target, FitOptions options) {
     const double least = least_second_moment(target);
     if (options.goal.kind == Goal::Kind::variance) {
         if (1.0 + options.goal.variance <= least) {
@@ -38,7 +38,7 @@ Fitted fit(const Target& target, const FitOptions& options) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (options.fit == ACDF_FIT_VARIANCE && options.goal.kind == Goal::Kind::cells && options.goal.cells == 0)
         throw std::invalid_argument("a goal of 0 cells");
-    if (options.fit == ACDF_FIT_VARIANCE) return fit_trees({grid_of(target)}, of_best_density(target, options));
+    if (options.fit == ACDF_FIT_VARIANCE) return fit_trees({grid_of(target)}, of_best_pdf(target, options));
     Fitted out;
     out.cascade = fit_two_levels(target, options);
     out.tree = encode_tree(out.cascade);

@@ -29,7 +29,7 @@ struct Outline {
 };
 
 /// For each part the sum of the shares of the cells below it; of their costs where all shares are 0, as they are
-/// where few cells stand for light that a company nearly covers.
+/// where few cells stand for light that an MIS partner nearly covers.
 std::vector<double> shares_below(const PruneNodes& nodes, const Pruned& pruned);
 
 /// Divisions along the same axis become one curve. `cost` is shares_below: where it is 0, nothing is refined.

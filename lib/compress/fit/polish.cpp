@@ -48,16 +48,16 @@ private:
 using Knots = std::vector<std::uint32_t>; ///< with both ends
 
 /// Where a knot may go, and the best way to get there.
-struct Place {
+struct KnotPosition {
     std::uint32_t at = 0;
     double cost = kInfinite;  ///< of all segments before it
     std::size_t previous = 0; ///< which place the knot before it takes
 };
 
-/// The places of knot i, in order: up to kWindow strides either way. The ends of the line stay.
-std::vector<Place> places(const Knots& knots, std::size_t i, std::uint32_t stride) {
+/// The knot_positions of knot i, in order: up to kWindow strides either way. The ends of the line stay.
+std::vector<KnotPosition> knot_positions(const Knots& knots, std::size_t i, std::uint32_t stride) {
     if (i == 0 || i + 1 == knots.size()) return {{knots[i], i == 0 ? 0.0 : kInfinite, 0}};
-    std::vector<Place> out;
+    std::vector<KnotPosition> out;
     for (std::int64_t k = -kWindow; k <= kWindow; ++k) {
         const std::int64_t at = knots[i] + k * std::int64_t{stride};
         if (at > 0 && at < knots.back()) out.push_back({static_cast<std::uint32_t>(at), kInfinite, 0});
@@ -65,15 +65,15 @@ std::vector<Place> places(const Knots& knots, std::size_t i, std::uint32_t strid
     return out;
 }
 
-/// The best joint move of all knots: dynamic programming over the knots in order, over a window of places each.
-/// Returns what it gained.
+/// The best joint move of all knots: dynamic programming over the knots in order, over a window of knot_positions
+/// each. Returns what it gained.
 double move_knots(const PolishedLine& line, std::uint32_t stride, Knots& knots) {
-    std::vector<std::vector<Place>> table{places(knots, 0, stride)};
+    std::vector<std::vector<KnotPosition>> table{knot_positions(knots, 0, stride)};
     double before = 0.0;
     for (std::size_t i = 1; i < knots.size(); ++i) {
         before += line.cost(knots[i - 1], knots[i]);
-        table.push_back(places(knots, i, stride));
-        for (Place& place : table[i])
+        table.push_back(knot_positions(knots, i, stride));
+        for (KnotPosition& place : table[i])
             for (std::size_t k = 0; k < table[i - 1].size() && table[i - 1][k].at < place.at; ++k) {
                 const double cost = table[i - 1][k].cost + line.cost(table[i - 1][k].at, place.at);
                 if (cost < place.cost) place.cost = cost, place.previous = k;

@@ -146,9 +146,9 @@ private:
     LineSum sums_[kLines];
 };
 
-/// Beside a company: what slices cost at best takes the place of their flux, and what they cost if left to it comes
-/// with it.
-void add_company(const Grid& grid, double total, const Box& box, Projections& out) {
+/// Beside an MIS partner: what slices cost at best takes the place of their flux, and what they cost if left to it
+/// comes with it.
+void add_partner(const Grid& grid, double total, const Box& box, Projections& out) {
     const std::size_t last = grid.dimensions() - 1;
     for (std::size_t axis = 0; axis <= last; ++axis) {
         std::fill(out[axis].flux.begin(), out[axis].flux.end(), 0.0);
@@ -214,7 +214,7 @@ void project(const Grid& grid, double total, const Box& box, Projections& out) {
         gathered.add(line);
     });
     gathered.finish();
-    if (grid.left) add_company(grid, total, box, out);
+    if (grid.left) add_partner(grid, total, box, out);
 }
 
 double integral(const Grid& grid) {

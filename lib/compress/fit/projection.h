@@ -23,8 +23,8 @@ struct Box {
 struct Moments {
     double measure = 0.0;
     double energy = 0.0; ///< of f^2
-    double flux = 0.0;   ///< of f; beside a company of what f costs at best
-    double left = 0.0;   ///< beside a company twice what the part costs if it is left to it; 0: without any
+    double flux = 0.0;   ///< of f; beside an MIS partner of what f costs at best
+    double left = 0.0;   ///< beside an MIS partner twice what the part costs if it is left to it; 0: without any
     double peak = 0.0;   ///< the largest f
 
     void add(const Moments& other) {
@@ -35,9 +35,9 @@ struct Moments {
         peak = other.peak > peak ? other.peak : peak;
     }
     /// C: what the part adds to sqrt(E[(f/p)^2]) as one cell of the best constant density. At least `flux`,
-    /// which is what it adds however finely it is divided. Beside a company: docs/method.md.
+    /// which is what it adds however finely it is divided. Beside an MIS partner: docs/method.md.
     double cost() const;
-    /// What its probability is proportional to: without a company, its cost.
+    /// What its probability is proportional to: without an MIS partner, its cost.
     double share(const Filling* filling) const;
     /// The largest f/p of the part as one cell, relative to its best density: peak over root mean square.
     double weight() const;
@@ -50,7 +50,7 @@ struct Moments {
 /// The moments of the slices of a box across one axis, by what they are.
 struct Slices {
     std::vector<double> measure, energy, flux;
-    std::vector<double> left; ///< empty without a company
+    std::vector<double> left; ///< empty without an MIS partner
     std::vector<float> peak;  ///< not normalised
 
     std::size_t size() const { return measure.size(); }

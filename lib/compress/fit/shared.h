@@ -1,5 +1,5 @@
 // Many distributions on one grid that share one partition into cells: each is a row of probabilities, and what is
-// drawn from is a mixture of rows (acdf/blend.h).
+// sampled from is a mixture of rows (acdf/blend.h).
 #pragma once
 
 #include "compress/fit/tiles.h"
@@ -53,8 +53,8 @@ private:
 /// The cell of each square.
 std::vector<std::uint32_t> cell_of_squares(const SharedGrid& grid, const TileTree& tree);
 
-/// A distribution that is drawn from as a mixture of rows: q = sum of share[i] row[bin[i]] (Lawrence et al. 2005
-/// take the nearest bin; mixtures are what acdf/blend.h draws from).
+/// A distribution that is sampled from as a mixture of rows: q = sum of share[i] row[bin[i]] (Lawrence et al. 2005
+/// take the nearest bin; mixtures are what acdf/blend.h samples from).
 struct SharedMixture {
     std::vector<double> moment; ///< one a cell: measure . integral of f^2, f normalised
     double weight = 1.0;        ///< in the mean of relative variances

@@ -64,7 +64,7 @@ struct TileSplit {
 
 class Divider {
 public:
-    Divider(const Target& target, const Worth& worth, const LightRule& rule)
+    Divider(const Target& target, const Worth& worth, const BrightTileRule& rule)
         : target_(target), worth_(worth), rule_(rule), sphere_(sphere_of(target)) {}
 
     TileTree run(std::uint32_t count) {
@@ -157,7 +157,7 @@ private:
         if (best.position == 0) return;
         const double worth = at(worth_.spread, box.begin[0], box.begin[1]);
         const double alarm = worth > 0.0 ? all.flux / worth * at(worth_.alarm, box.begin[0], box.begin[1]) : 0.0;
-        // A light that crosses the horizon may draw in vain as it does between bins, over its radius instead.
+        // A light that crosses the horizon may sample in vain as it does between bins, over its radius instead.
         const double reach = radius(target_, box);
         if (alarm > rule_.alarm) {
             nodes_[index].light = reach <= rule_.radius;
@@ -172,7 +172,7 @@ private:
         const Node& n = nodes_[node];
         if (n.first_child == 0) {
             tree.tiles.push_back(n.box);
-            tree.lights += n.light;
+            tree.bright_tiles += n.light;
             return TileTree::tile | static_cast<std::uint32_t>(tree.tiles.size() - 1);
         }
         const std::size_t index = tree.splits.size();
@@ -186,7 +186,7 @@ private:
 
     const Target& target_;
     const Worth& worth_;
-    const LightRule rule_;
+    const BrightTileRule rule_;
     Sphere sphere_;
     std::array<std::vector<Light>, 2> lines_;
     std::vector<Light> after_;
@@ -196,7 +196,7 @@ private:
 
 } // namespace
 
-TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count, const LightRule& rule) {
+TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count, const BrightTileRule& rule) {
     return Divider(target, worth, rule).run(count);
 }
 

@@ -22,8 +22,8 @@ struct TileTree {
         std::uint32_t child[2] = {};
     };
     std::vector<Split> splits;
-    std::vector<Box> tiles;   ///< one more than splits
-    std::uint32_t lights = 0; ///< tiles of light bright enough for a light, and small enough
+    std::vector<Box> tiles;         ///< one more than splits
+    std::uint32_t bright_tiles = 0; ///< tiles of light bright enough for a light, and small enough
 };
 
 /// Numbers on a coarse grid of the target's parameterization.
@@ -43,24 +43,25 @@ struct Worth {
     /// Mean over the bins of sin^2 / (cos E), kept finite near the horizon: what a smaller spread of its tile
     /// saves.
     CoarseMap spread;
-    /// Largest share of the samples of any normal that light at its horizon could draw by mistake, per unit of
+    /// Largest share of the samples of any normal that light at its horizon could sample by mistake, per unit of
     /// light.
     CoarseMap alarm;
     double band = 0.0; ///< sine below which light counts as at the horizon
 };
 
-/// Which tiles become lights.
-struct LightRule {
-    double alarm = 0.002; ///< those whose light could draw more by mistake
+/// Which tiles become bright tiles.
+struct BrightTileRule {
+    double alarm = 0.002; ///< those whose light could sample more by mistake
     double radius = 0.03; ///< radians; a light is no larger
-    bool few = false;     ///< lights are not divided further; else they are the smaller the brighter they are
+    bool few = false;     ///< bright tiles are not divided further; else they are the smaller the brighter they are
 };
 
 /// Divides a probe (rows theta, columns phi, or v and u) into at most `count` tiles. Each split is the one that
 /// lowers most the sum over tiles of the light's angular variance, ∫ w L |omega - mean|^2 with w = worth.spread: to
 /// first order, what the cosine to a normal adds to the variance within a tile. Tiles of bright light that are too
 /// large for a light come first.
-TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count, const LightRule& rule = {});
+TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count,
+                      const BrightTileRule& rule = {});
 
 /// The middle of a box in phi and z, or in u and v, and so of its solid angle.
 std::array<double, 3> centre(const Target& target, const Box& box);

@@ -159,14 +159,14 @@ private:
         return options_.file_size(tree);
     }
 
-    /// Knots of a line are moved to better places, unless that could break a bound on weights.
+    /// Knots of a line are moved to better positions, unless that could break a bound on weights.
     bool polished() const {
-        return !std::isfinite(heaviest_) && !beside_company() &&
+        return !std::isfinite(heaviest_) && !beside_partner() &&
                std::any_of(partitions_.begin(), partitions_.end(),
                            [](const auto& partition) { return partition && partition->grid().dimensions() == 1; });
     }
 
-    bool beside_company() const {
+    bool beside_partner() const {
         return std::any_of(partitions_.begin(), partitions_.end(),
                            [](const auto& partition) { return partition && partition->grid().filling; });
     }
@@ -183,7 +183,7 @@ private:
         for (std::size_t bin = 0; bin < partitions_.size(); ++bin)
             if (partitions_[bin]) {
                 flatten(*partitions_[bin], trees[bin], flat);
-                if (!std::isfinite(heaviest_) && !beside_company()) polish(*partitions_[bin], bin, flat);
+                if (!std::isfinite(heaviest_) && !beside_partner()) polish(*partitions_[bin], bin, flat);
             } else {
                 flatten_nothing(dark_axis_, flat);
             }

@@ -62,7 +62,7 @@ private:
     std::vector<std::vector<float>> tables_;
 };
 
-/// What cells of a grid cost (PAPER.md §5; beside an MIS partner compress/company.h), in units in which squares fit
+/// What cells of a grid cost (PAPER.md §5; beside an MIS partner compress/partner.h), in units in which squares fit
 /// a float.
 class HalvedSums {
 public:

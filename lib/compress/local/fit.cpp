@@ -1,10 +1,11 @@
-// Tiles, then curves within them at one price a byte, then a row of probabilities for each bin: docs/local.md.
+// Tiles, then curves within them at one price a byte, then a row of probabilities for each bin:
+// docs/notes/local-method.md.
 #include "compress/local/fit.h"
 
 #include "compress/fit/shared.h"
-#include "compress/local/company.h"
 #include "compress/local/light.h"
 #include "compress/local/mixed_rows.h"
+#include "compress/local/partner.h"
 #include "compress/local/sums.h"
 #include "compress/local/tile_curves.h"
 #include "compress/local/tile_grids.h"
@@ -41,27 +42,27 @@ std::vector<double> worth_of_tiles(const Target& target, const std::vector<Box>&
     return out;
 }
 
-constexpr std::uint32_t kManyLights = 2 * ACDF_MAX_LIGHTS; // the brightest half of them is taken
+constexpr std::uint32_t kManyBrightTiles = 2 * ACDF_MAX_BRIGHT_TILES; // the brightest half of them is taken
 
-/// Tiles, and the rule by which they become lights. Where that of most probes finds many more lights than there may
-/// be, as it does in large bright areas and for normals that nearly all light is hidden from, tiles would be spent
-/// on them in vain: lights are larger then, and only the brightest.
-LightRule divide(const Target& target, const Worth& worth, std::uint32_t count, TileTree& tiles) {
-    LightRule rule;
+/// Tiles, and the rule by which they become bright tiles. Where that of most probes finds many more bright tiles
+/// than there may be, as it does in large bright areas and for normals that nearly all light is hidden from, tiles
+/// would be spent on them in vain: bright tiles are larger then, and only the brightest.
+BrightTileRule divide(const Target& target, const Worth& worth, std::uint32_t count, TileTree& tiles) {
+    BrightTileRule rule;
     tiles = divide_tiles(target, worth, count, rule);
-    if (tiles.lights <= kManyLights) return rule;
+    if (tiles.bright_tiles <= kManyBrightTiles) return rule;
     rule = {rule.alarm, 1.5 * rule.radius, true};
     for (int step = 0; step < 12; ++step, rule.alarm *= 3.0) {
         tiles = divide_tiles(target, worth, count, rule);
-        if (tiles.lights <= kManyLights) break;
+        if (tiles.bright_tiles <= kManyBrightTiles) break;
     }
     return rule;
 }
 
-/// Tiles of light so bright that, near the horizon, mixing the rows of bins would draw many samples below it.
-std::vector<AcdfLight> find_lights(const Target& target, const TileTree& tiles, const TileInsides& insides,
-                                   double total, const Worth& worth, const LightRule& rule) {
-    std::vector<std::pair<double, AcdfLight>> found;
+/// Tiles of light so bright that, near the horizon, mixing the rows of bins would sample many samples below it.
+std::vector<AcdfBrightTile> find_lights(const Target& target, const TileTree& tiles, const TileInsides& insides,
+                                        double total, const Worth& worth, const BrightTileRule& rule) {
+    std::vector<std::pair<double, AcdfBrightTile>> found;
     for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
         const Box& box = tiles.tiles[t];
         const double reach = radius(target, box), share = insides.tile_cost(t);
@@ -70,7 +71,7 @@ std::vector<AcdfLight> find_lights(const Target& target, const TileTree& tiles, 
             worth.alarm.at(double(box.begin[1]) / target.columns, double(box.begin[0]) / target.rows);
         if (reach > rule.radius || alarm < rule.alarm || !(static_cast<float>(share) > 0.0f)) continue;
         const Direction middle = centre(target, box);
-        AcdfLight light = {};
+        AcdfBrightTile light = {};
         for (std::size_t k = 0; k < 3; ++k) light.direction[k] = static_cast<float>(middle[k]);
         light.radius = static_cast<float>(reach + kHorizonMargin);
         light.share = static_cast<float>(share);
@@ -82,10 +83,11 @@ std::vector<AcdfLight> find_lights(const Target& target, const TileTree& tiles, 
         found.push_back({alarm, light});
     }
     std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    if (found.size() > ACDF_MAX_LIGHTS) found.resize(ACDF_MAX_LIGHTS);
-    std::vector<AcdfLight> out;
+    if (found.size() > ACDF_MAX_BRIGHT_TILES) found.resize(ACDF_MAX_BRIGHT_TILES);
+    std::vector<AcdfBrightTile> out;
     for (const auto& light : found) out.push_back(light.second);
-    std::sort(out.begin(), out.end(), [](const AcdfLight& a, const AcdfLight& b) { return a.tile < b.tile; });
+    std::sort(out.begin(), out.end(),
+              [](const AcdfBrightTile& a, const AcdfBrightTile& b) { return a.tile < b.tile; });
     return out;
 }
 
@@ -108,7 +110,7 @@ std::vector<std::uint8_t> row_above(const LocalFit& fit, std::vector<double> cos
     return row;
 }
 
-/// Rows and shares of all bins that occur; `costs(bin)` are what tiles are drawn in proportion to, and
+/// Rows and shares of all bins that occur; `costs(bin)` are what tiles are sampled in proportion to, and
 /// `put(bin, costs)` stores that.
 template <class Costs, class Put>
 void fill_rows(const Costs& costs, const Put& put, LocalFit& out) {
@@ -131,13 +133,13 @@ Sums sums_of(const LocalFit& fit) { return {fit.shared.row_count, fit.tiles.tile
 } // namespace
 
 LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const BinLight& light, const LocalSize& size,
-                         const Progress& progress, const Company& company)
+                         const Progress& progress, const Partner& partner)
     : target_(target), bins_(bins), light_(light), size_(size), total_(integral(target)), progress_(progress) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (bins.subdivisions == 0) throw std::invalid_argument("cells of normals cannot share tiles");
-    if (fast() && (company || std::isfinite(size.max_weight)))
-        throw std::invalid_argument("the fast shape has no company, and no bound on weights");
-    if (company) beside_.emplace(target, light.points, bins, light.irradiance, company);
+    if (fast() && (partner || std::isfinite(size.max_weight)))
+        throw std::invalid_argument("the fast shape has no partner, and no bound on weights");
+    if (partner) beside_.emplace(target, light.points, bins, light.irradiance, partner);
     report(0.1);
     rule_ = divide(beside_ ? beside_->excess(target) : target, light.worth, std::min(size.tiles, ACDF_MAX_TILES),
                    tiles_);
@@ -201,7 +203,7 @@ LocalFit LocalFitter::outlined(std::uint64_t inside_bytes) {
     if (fast()) outline_grids(inside_bytes, out);
     else outline_curves(inside_bytes, out);
     report(0.8);
-    out.lights =
+    out.bright_tiles =
         find_lights(target_, tiles_, insides(), fast() ? total_ : tile_curves_->total(), light_.worth, rule_);
     out.shared.splits = stored_splits(tiles_, [](const TileTree::Split& split) {
         return std::uint32_t{split.axis == 0 ? ACDF_AXIS_THETA : ACDF_AXIS_PHI} | split.position << 3;
@@ -219,12 +221,13 @@ LocalFit LocalFitter::outlined(std::uint64_t inside_bytes) {
 }
 
 void LocalFitter::fill_beside(LocalFit& out) const {
-    const FilledTiles light(target_, tiles_, *tile_curves_, *curves_.cascade, out.lights, *beside_, bins_);
+    const FilledTiles light(target_, tiles_, *tile_curves_, *curves_.cascade, out.bright_tiles, *beside_, bins_);
     const double total = tile_curves_->total();
     const auto shares_of = [&](std::size_t b) {
         std::vector<double> shares = light.shares(b);
         for (double& share : shares) share /= total;
-        out.records[b] = {light.recommended_share(b, shares), static_cast<float>(light_.irradiance[b] / total)};
+        out.records[b] = {light.recommended_light_share(b, shares),
+                          static_cast<float>(light_.irradiance[b] / total)};
         return shares;
     };
     const auto put = [&](std::size_t b, const std::vector<double>& shares) {
@@ -234,8 +237,8 @@ void LocalFitter::fill_beside(LocalFit& out) const {
 }
 
 void LocalFitter::fill_mixed(LocalFit& out) const {
-    const TileLight light(target_, tiles_, insides(), out.lights);
-    const TileParts parts = mixed_rows(light, bins_, out.lights);
+    const TileLight light(target_, tiles_, insides(), out.bright_tiles);
+    const TileParts parts = mixed_rows(light, bins_, out.bright_tiles);
     const auto costs = [&](std::size_t b) { return std::vector<double>(parts[b].begin(), parts[b].end()); };
     const auto put = [&](std::size_t b, const std::vector<double>& c) {
         const std::uint32_t row = out.tree.roots[b];
@@ -254,9 +257,9 @@ void LocalFitter::fill(LocalFit& out) const {
 }
 
 LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size, const Progress& progress,
-                   const Company& company) {
+                   const Partner& partner) {
     const BinLight light(target, bins);
-    LocalFitter fitter(target, bins, light, size, progress, company);
+    LocalFitter fitter(target, bins, light, size, progress, partner);
     LocalFit out = fitter.outlined(size.inside_bytes);
     fitter.fill(out);
     return out;

@@ -1,14 +1,14 @@
 // The fit of a local environment map: one probe, for every normal the light above its horizon times the cosine.
 #pragma once
 
-#include "compress/company.h"
 #include "compress/fit/fit.h"
 #include "compress/fit/tiles.h"
-#include "compress/local/company.h"
 #include "compress/local/light.h"
 #include "compress/local/normals.h"
+#include "compress/local/partner.h"
 #include "compress/local/tile_curves.h"
 #include "compress/local/tile_grids.h"
+#include "compress/partner.h"
 
 #include <acdf/layout.h>
 
@@ -28,12 +28,13 @@ enum class LocalShape { small, fast };
 struct LocalSize {
     std::uint32_t tiles = 900;           ///< at most so many
     std::uint64_t inside_bytes = 131072; ///< of curves or grids in tiles, at most (but for the least there must be)
-    LocalShape shape = LocalShape::small; ///< fast: without a company or a bound on weights
+    LocalShape shape = LocalShape::small; ///< fast: without an MIS partner or a bound on weights
     /// What the whole environment counts beside all normals together where its tree is made of curves in tiles.
     double whole_worth = 0.0;
-    WholeTree whole = WholeTree::of_tiles; ///< of the fast shape, and beside a company, it has curves of its own
-    std::uint64_t whole_bytes = 16384;     ///< of those, at most
-    /// What weights are held to, over their mean, as far as bins tell; not beside a company.
+    WholeTree whole =
+        WholeTree::of_tiles;           ///< of the fast shape, and beside an MIS partner, it has curves of its own
+    std::uint64_t whole_bytes = 16384; ///< of those, at most
+    /// What weights are held to, over their mean, as far as bins tell; not beside an MIS partner.
     double max_weight = std::numeric_limits<double>::infinity();
 };
 
@@ -43,23 +44,23 @@ struct LocalFit {
     Cascade cascade;   ///< root 0: the environment as a whole
     EncodedTree tree;  ///< roots: one a bin, its row or ACDF_NO_ROOT where it is not stored
     StoredRows shared; ///< tiles, and a row for each bin
-    std::vector<AcdfLight> lights;
-    std::vector<float> shares; ///< one a bin: its irradiance, lights excepted, over the integral of the probe
-    std::vector<AcdfCompanyRecord> records; ///< beside a company: one a bin
+    std::vector<AcdfBrightTile> bright_tiles;
+    std::vector<float> shares; ///< one a bin: its irradiance, bright tiles excepted, over the integral of the probe
+    std::vector<AcdfPartnerRecord> records; ///< beside an MIS partner: one a bin
 };
 
-/// Fits tiles, what is in them, lights, and the rows of all bins that occur. Deterministic for any number of
+/// Fits tiles, what is in them, bright tiles, and the rows of all bins that occur. Deterministic for any number of
 /// threads.
 ///
-/// Beside a company a share is the flux that is left to the file, rows are 0 where the company covers a tile, and
-/// records tell the irradiance.
+/// Beside an MIS partner a share is the flux that is left to the file, rows are 0 where the partner covers a tile,
+/// and records tell the irradiance.
 class LocalFitter {
 public:
     /// Divides into tiles; `size.inside_bytes` is of no meaning. Target, bins and their light must outlive it.
     /// Throws std::invalid_argument where the target has no energy, or the bins are cells of a grid: rows are made
     /// for corners, whose mixture covers what a normal between them sees.
     LocalFitter(const Target& target, const NormalBins& bins, const BinLight& light, const LocalSize& size,
-                const Progress& progress, const Company& company);
+                const Progress& progress, const Partner& partner);
 
     /// Where the environment has curves of its own: at most `bytes` of them, not size.whole_bytes.
     void refit_whole(std::uint64_t bytes);
@@ -96,10 +97,10 @@ private:
     const LocalSize size_;
     const double total_; ///< the integral of the target
     const Progress progress_;
-    std::optional<LocalCompany> beside_;
-    Target filled_; ///< what is left of the target beside a company
+    std::optional<LocalPartner> beside_;
+    Target filled_; ///< what is left of the target beside an MIS partner
     TileTree tiles_;
-    LightRule rule_;
+    BrightTileRule rule_;
     std::vector<double> worth_of_tiles_;
     // Of the fit that was outlined last:
     std::optional<TileCurves> tile_curves_;
@@ -109,6 +110,6 @@ private:
 };
 
 LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size,
-                   const Progress& progress = {}, const Company& company = {});
+                   const Progress& progress = {}, const Partner& partner = {});
 
 } // namespace acdf::compress

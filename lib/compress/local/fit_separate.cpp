@@ -108,7 +108,7 @@ struct OneBin {
     Target target;
     double irradiance = 0.0;
 
-    /// Its part of all light: nothing is drawn where that is 0.
+    /// Its part of all light: nothing is sampled where that is 0.
     float share(double total) const {
         return target.total > 0.0 ? static_cast<float>(std::max(irradiance / total, 1e-12)) : 0.0f;
     }

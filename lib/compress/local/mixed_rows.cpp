@@ -25,7 +25,7 @@ constexpr double kCornerShare = 0.2;
 constexpr std::size_t kNearby = 3; // normals of a triangle follow each other: nearly the same tiles are cut
 static_assert(kNearby <= TileLight::views_at_once, "");
 
-/// A normal that draws from a mixture, on a face of the octahedron that the bins divide: |x| + |y| + |z| is its
+/// A normal that samples from a mixture, on a face of the octahedron that the bins divide: |x| + |y| + |z| is its
 /// number of subdivisions.
 struct MixedNormal {
     Direction place{};
@@ -107,13 +107,13 @@ float as_part(double value) {
     return value > 0.0 ? std::max(static_cast<float>(value), std::numeric_limits<float>::min()) : 0.0f;
 }
 
-/// What lights draw from a place on a face.
-double light_weights(const std::vector<AcdfLight>& lights, const Direction& place, double length) {
+/// What bright tiles sample from a place on a face.
+double light_weights(const std::vector<AcdfBrightTile>& bright_tiles, const Direction& place, double length) {
     AcdfLocalPoint point = {};
     std::copy(place.begin(), place.end(), point.normal);
     point.length = length;
     double sum = 0.0;
-    for (const AcdfLight& light : lights) sum += acdf_light_weight(&light, &point);
+    for (const AcdfBrightTile& light : bright_tiles) sum += acdf_bright_tile_weight(&light, &point);
     return sum;
 }
 
@@ -129,9 +129,9 @@ struct MixedScratch {
 /// factorizations).
 class Step {
 public:
-    Step(const TileLight& light, const std::vector<AcdfLight>& lights, const MixedNormals& normals,
+    Step(const TileLight& light, const std::vector<AcdfBrightTile>& bright_tiles, const MixedNormals& normals,
          const TileParts& own, const TileParts& parts)
-        : light_(light), lights_(lights), normals_(normals), own_(own), parts_(parts),
+        : light_(light), bright_tiles_(bright_tiles), normals_(normals), own_(own), parts_(parts),
           least_cosine_(kLeastCosine / normals.subdivisions()) {}
 
     void run(std::size_t bin, MixedScratch& s, std::vector<float>& out) const {
@@ -177,9 +177,9 @@ private:
             for (std::size_t t = 0; t < row.size(); ++t) s.mixed[t] += normal.weight[i] * double{row[t]};
             if (normal.bin[i] == bin) own_weight = normal.weight[i];
         }
-        // Of lights, what they draw is what they should.
-        const double drawn = light_weights(lights_, normal.place, length);
-        double irradiance = drawn, moments = drawn, sum = drawn, vain = 0.0;
+        // Of bright tiles, what they sample is what they should.
+        const double sampled = light_weights(bright_tiles_, normal.place, length);
+        double irradiance = sampled, moments = sampled, sum = sampled, vain = 0.0;
         for (std::size_t t = 0; t < s.mixed.size(); ++t) {
             if (!(s.mixed[t] > 0.0)) continue;
             const double cost = length * view.cost[t];
@@ -200,7 +200,7 @@ private:
     }
 
     const TileLight& light_;
-    const std::vector<AcdfLight>& lights_;
+    const std::vector<AcdfBrightTile>& bright_tiles_;
     const MixedNormals& normals_;
     const TileParts &own_, &parts_;
     const double least_cosine_;
@@ -208,7 +208,8 @@ private:
 
 } // namespace
 
-TileParts mixed_rows(const TileLight& light, const NormalBins& bins, const std::vector<AcdfLight>& lights) {
+TileParts mixed_rows(const TileLight& light, const NormalBins& bins,
+                     const std::vector<AcdfBrightTile>& bright_tiles) {
     tbb::enumerable_thread_specific<MixedScratch> scratch;
     TileParts own(bins.normals.size());
     parallel_for(std::size_t{0}, own.size(), [&](std::size_t b) {
@@ -220,7 +221,7 @@ TileParts mixed_rows(const TileLight& light, const NormalBins& bins, const std::
     const MixedNormals normals(bins);
     TileParts parts = own, next = own;
     for (int step = 0; step < kDescents; ++step) {
-        const Step towards(light, lights, normals, own, parts);
+        const Step towards(light, bright_tiles, normals, own, parts);
         parallel_for(std::size_t{0}, parts.size(), [&](std::size_t b) {
             if (!parts[b].empty()) towards.run(b, scratch.local(), next[b]);
         });

@@ -1,4 +1,4 @@
-// Rows of a local environment map, made for the normals between its bins: they draw from mixtures of rows.
+// Rows of a local environment map, made for the normals between its bins: they sample from mixtures of rows.
 #pragma once
 
 #include "compress/local/normals.h"
@@ -15,9 +15,10 @@ namespace acdf::compress {
 using TileParts = std::vector<std::vector<float>>;
 
 /// The rows whose mixtures have little variance at all normals. A corner's own best row lends light to its
-/// neighbours that they do not see; where that draws many samples below a horizon, rows are held back further, so
+/// neighbours that they do not see; where that samples many samples below a horizon, rows are held back further, so
 /// that variance and samples in vain fall together. A part is positive wherever the corner sees light. `bins` are
 /// those of an octahedron. The same for any number of threads.
-TileParts mixed_rows(const TileLight& light, const NormalBins& bins, const std::vector<AcdfLight>& lights);
+TileParts mixed_rows(const TileLight& light, const NormalBins& bins,
+                     const std::vector<AcdfBrightTile>& bright_tiles);
 
 } // namespace acdf::compress

@@ -27,7 +27,7 @@ void encode_sums(const Sums& sums, std::size_t row, const std::vector<double>& p
         const std::size_t end_of_group = std::min((g + 1) * kSumTiles, parts.size());
         const std::vector<double> in(parts.begin() + std::ptrdiff_t(g * kSumTiles),
                                      parts.begin() + std::ptrdiff_t(end_of_group));
-        if (!(*std::max_element(in.begin(), in.end()) > 0.0)) continue; // its bytes stay 255: never drawn from
+        if (!(*std::max_element(in.begin(), in.end()) > 0.0)) continue; // its bytes stay 255: never sampled from
         const std::vector<std::uint64_t> steps = apportion(in, kTileSteps, 1);
         costs[g] = cost_of(in, steps);
         std::uint64_t end = 0;

@@ -26,8 +26,8 @@ struct Sums {
     std::size_t tiles_at(std::size_t row) const { return rows * 2 * ends() + row * kSumTiles * groups(); }
 };
 
-/// Writes the row that draws tiles in proportion to `parts` as nearly as it can: what is positive stays so. `chunk`
-/// has sums.bytes() of them.
+/// Writes the row that samples tiles in proportion to `parts` as nearly as it can: what is positive stays so.
+/// `chunk` has sums.bytes() of them.
 void encode_sums(const Sums& sums, std::size_t row, const std::vector<double>& parts, std::uint8_t* chunk);
 /// The probabilities that a row gives to tiles.
 std::vector<double> decode_sums(const Sums& sums, std::size_t row, const std::uint8_t* chunk);

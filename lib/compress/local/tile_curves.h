@@ -62,7 +62,7 @@ public:
 
     /// The sum of the shares of the cells of a tile: its part of the environment.
     double tile_cost(std::size_t tile) const override { return cost_[tile]; }
-    /// Without a company.
+    /// Without an MIS partner.
     std::vector<LitCell> lit_cells(std::size_t tile) const override;
 
     /// Calls `visit(part)` for each cell of a tile.

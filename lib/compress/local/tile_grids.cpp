@@ -88,7 +88,7 @@ TileGrid steps_for(const Energies& e) {
 std::vector<std::uint64_t> steps_of(const std::vector<double>& cost, double& loss) {
     const double largest = *std::max_element(cost.begin(), cost.end());
     loss = 0.0;
-    if (!(largest > 0.0)) { // never drawn from: the first takes all
+    if (!(largest > 0.0)) { // never sampled from: the first takes all
         std::vector<std::uint64_t> first(cost.size(), 0);
         first.front() = kGridSteps;
         return first;

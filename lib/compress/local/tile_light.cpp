@@ -47,10 +47,10 @@ ACDF_BY_LANES void add_points(const LightPoint* points, std::size_t count, const
 } // namespace
 
 TileLight::TileLight(const Target& target, const TileTree& tiles, const TileInsides& insides,
-                     const std::vector<AcdfLight>& lights)
+                     const std::vector<AcdfBrightTile>& bright_tiles)
     : target_(target), divided_(target), tiles_(tiles), tile_(tiles.tiles.size()) {
     std::vector<bool> is_light(tile_.size(), false);
-    for (const AcdfLight& light : lights) is_light[light.tile] = true;
+    for (const AcdfBrightTile& light : bright_tiles) is_light[light.tile] = true;
     parallel_for(std::size_t{0}, tile_.size(), [&](std::size_t t) {
         if (!is_light[t] && insides.tile_cost(t) > 0.0) fill(insides, t);
     });

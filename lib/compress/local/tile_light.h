@@ -20,12 +20,12 @@ struct TileView {
     std::vector<double> hidden; ///< of the samples within the tile: the share below the horizon
 };
 
-/// Of each tile but the lights, its light as points, weighted so that the sum of amount . cos^2 is the square of
-/// the cost of the tile for a normal. `target` and `tiles` must outlive it.
+/// Of each tile but the bright tiles, its light as points, weighted so that the sum of amount . cos^2 is the square
+/// of the cost of the tile for a normal. `target` and `tiles` must outlive it.
 class TileLight {
 public:
     TileLight(const Target& target, const TileTree& tiles, const TileInsides& insides,
-              const std::vector<AcdfLight>& lights);
+              const std::vector<AcdfBrightTile>& bright_tiles);
 
     std::size_t size() const { return tile_.size(); }
     /// Of all light of a tile, whatever the cosine; 0: a light, or dark.

@@ -1,4 +1,4 @@
-// The tree of a local environment map that points without a normal draw from.
+// The tree of a local environment map that points without a normal sample from.
 #pragma once
 
 #include "compress/fit/fit.h"

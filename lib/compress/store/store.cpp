@@ -127,7 +127,7 @@ Bytes assemble(AcdfKind kind, std::vector<Payload> payloads, AcdfCodec codec) {
 }
 
 /// What a reader that does not know it may leave out.
-bool is_ancillary(std::uint32_t type) { return type == ACDF_CHUNK_PLACES || type == ACDF_CHUNK_PORTALS; }
+bool is_ancillary(std::uint32_t type) { return type == ACDF_CHUNK_VISIBILITY || type == ACDF_CHUNK_PORTALS; }
 
 /// A file of DESC, `trees`, what the kind needs beside them, and META.
 Bytes store_chunks(std::vector<Payload> trees, const Description& description, AcdfCodec codec) {
@@ -208,21 +208,21 @@ std::vector<Chunk> shared_chunks(const StoredRows& rows) {
     return {std::move(tiles), {ACDF_CHUNK_SUMS, rows.sums}, {ACDF_CHUNK_GRID, rows.grid}};
 }
 
-Chunk local_chunk(float cosine_share, const std::vector<AcdfLight>& lights) {
+Chunk local_chunk(float cosine_share, const std::vector<AcdfBrightTile>& bright_tiles) {
     Chunk chunk{ACDF_CHUNK_LOCAL, {}};
-    append(chunk.bytes, AcdfLocalHeader{cosine_share, static_cast<std::uint32_t>(lights.size())});
-    for (const AcdfLight& light : lights) append(chunk.bytes, light);
+    append(chunk.bytes, AcdfLocalHeader{cosine_share, static_cast<std::uint32_t>(bright_tiles.size())});
+    for (const AcdfBrightTile& light : bright_tiles) append(chunk.bytes, light);
     return chunk;
 }
 
-Chunk company_chunk(const Company& company, float recommended_share,
-                    const std::vector<AcdfCompanyRecord>& records) {
-    Chunk chunk{ACDF_CHUNK_COMPANY, {}};
+Chunk partner_chunk(const Partner& partner, float recommended_light_share,
+                    const std::vector<AcdfPartnerRecord>& records) {
+    Chunk chunk{ACDF_CHUNK_PARTNER, {}};
     append(chunk.bytes,
-           AcdfCompany{static_cast<std::uint32_t>(company.kind), static_cast<std::uint32_t>(company.heuristic),
-                       static_cast<float>(company.share()), recommended_share,
+           AcdfPartner{static_cast<std::uint32_t>(partner.kind), static_cast<std::uint32_t>(partner.heuristic),
+                       static_cast<float>(partner.share()), recommended_light_share,
                        static_cast<std::uint32_t>(records.size()), 0});
-    for (const AcdfCompanyRecord& record : records) append(chunk.bytes, record);
+    for (const AcdfPartnerRecord& record : records) append(chunk.bytes, record);
     return chunk;
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "compress/cascade.h"
-#include "compress/company.h"
 #include "compress/halvings/halvings.h"
+#include "compress/partner.h"
 
 #include <acdf/layout.h>
 
@@ -80,10 +80,11 @@ struct StoredRows {
 std::vector<Chunk> shared_chunks(const StoredRows& rows);
 
 /// Chunk LOCL.
-Chunk local_chunk(float cosine_share, const std::vector<AcdfLight>& lights);
+Chunk local_chunk(float cosine_share, const std::vector<AcdfBrightTile>& bright_tiles);
 
 /// Chunk COMP. `records`: none, or one a bin.
-Chunk company_chunk(const Company& company, float recommended_share, const std::vector<AcdfCompanyRecord>& records);
+Chunk partner_chunk(const Partner& partner, float recommended_light_share,
+                    const std::vector<AcdfPartnerRecord>& records);
 
 /// The whole file. The same arguments give the same bytes. Metadata is never compressed: it is short, stays
 /// readable, and keeps its size whatever numbers it tells.

@@ -1,5 +1,5 @@
-// Tables of the RGL material database: interpolation, and the warp that draws from them (Dupuy and Jakob 2018, §4;
-// marginal and conditional CDFs of a bilinear density).
+// Tables of the RGL material database: interpolation, and the warp that samples from them (Dupuy and Jakob 2018,
+// §4; marginal and conditional CDFs of a bilinear density).
 #pragma once
 
 #include <array>

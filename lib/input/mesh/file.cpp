@@ -52,8 +52,8 @@ void for_each_mesh(const std::string& path, const std::function<void(const aiMes
         require_regular_file(instances.mesh, "a mesh");
         Assimp::Importer importer; // logs nowhere but where a program asks it to
         const aiScene* scene = read_mesh(importer, instances.mesh);
-        for (const Placement& place : instances.places)
-            for (unsigned m = 0; m < scene->mNumMeshes; ++m) take(*scene->mMeshes[m], place);
+        for (const Placement& placement : instances.placements)
+            for (unsigned m = 0; m < scene->mNumMeshes; ++m) take(*scene->mMeshes[m], placement);
     }
 }
 

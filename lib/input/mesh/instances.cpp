@@ -21,11 +21,11 @@ std::string rest_of(const char* at, const char* end) {
 }
 
 /// Numbers of a usual size, and no mesh becomes flat.
-bool is_sound(const Placement& place) {
-    for (const auto& row : place.rows)
+bool is_sound(const Placement& placement) {
+    for (const auto& row : placement.rows)
         for (const double x : row)
             if (!(std::abs(x) <= 1e15)) return false;
-    return std::abs(place.determinant()) >= 1e-30;
+    return std::abs(placement.determinant()) >= 1e-30;
 }
 
 } // namespace
@@ -39,20 +39,20 @@ std::vector<Instances> read_instances(const std::string& path) {
             return input_error(path, "line " + std::to_string(line.number) + " " + what);
         };
         if (is_blank(line.begin, line.end)) return;
-        Placement place;
+        Placement placement;
         double numbers[12];
         const char* at = line.begin;
         const int count = read_numbers(at, line.end, numbers, 12);
         const std::string name = rest_of(at, line.end);
         if (count != 12 || name.empty()) throw fail(std::string("is no ") + form);
-        for (std::size_t i = 0; i < 12; ++i) place.rows[i / 4][i % 4] = numbers[i];
-        if (!is_sound(place)) throw fail("makes its mesh flat, or larger than 1e15");
+        for (std::size_t i = 0; i < 12; ++i) placement.rows[i / 4][i % 4] = numbers[i];
+        if (!is_sound(placement)) throw fail("makes its mesh flat, or larger than 1e15");
         const std::string mesh = (std::filesystem::path(path).parent_path() / name).string();
         if (const std::string kind = lower_extension(mesh); kind != ".obj" && kind != ".ply")
             throw fail("names no mesh: .obj or .ply");
         auto same = std::find_if(out.begin(), out.end(), [&](const Instances& i) { return i.mesh == mesh; });
         if (same == out.end()) same = out.insert(out.end(), Instances{mesh, {}});
-        same->places.push_back(place);
+        same->placements.push_back(placement);
     });
     if (out.empty()) throw input_error(path, "it lists no mesh");
     return out;
@@ -76,7 +76,7 @@ std::uint64_t scene_bytes(const std::string& path) {
     for (const Instances& instances : all) {
         std::error_code error;
         const std::uintmax_t bytes = std::filesystem::file_size(instances.mesh, error);
-        if (!error) sum += bytes * instances.places.size();
+        if (!error) sum += bytes * instances.placements.size();
     }
     return sum;
 }

@@ -9,10 +9,10 @@
 
 namespace acdf::input {
 
-/// A mesh of a scene and all places where it stands.
+/// A mesh of a scene and all placements where it stands.
 struct Instances {
     std::string mesh; ///< path of an .obj or .ply
-    std::vector<Placement> places;
+    std::vector<Placement> placements;
 };
 
 /// Whether a file is a list of instances, by its name: .instances.

@@ -6,9 +6,9 @@ namespace acdf::input {
 namespace {
 
 /// Of the linear part.
-double cofactor(const Placement& place, std::size_t i, std::size_t k) {
+double cofactor(const Placement& placement, std::size_t i, std::size_t k) {
     const auto at = [&](std::size_t row, std::size_t column) {
-        return place.rows[(i + row) % 3][(k + column) % 3];
+        return placement.rows[(i + row) % 3][(k + column) % 3];
     };
     return at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1);
 }

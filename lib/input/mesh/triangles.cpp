@@ -1,6 +1,6 @@
 #include "input/mesh/triangles.h"
 
-#include "compress/places/light.h"
+#include "compress/visibility/light.h"
 #include "input/error.h"
 #include "input/mesh/file.h"
 
@@ -23,15 +23,15 @@ bool are_finite(const std::array<float, 3>& v) {
     return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
-bool corner_of(const aiMesh& mesh, const Placement& place, unsigned index, UpAxis up, Triangles::Corner& out) {
+bool corner_of(const aiMesh& mesh, const Placement& placement, unsigned index, UpAxis up, Triangles::Corner& out) {
     if (index >= mesh.mNumVertices) return false;
     const aiVector3D& p = mesh.mVertices[index];
-    out.position = turned(place.position({p.x, p.y, p.z}), up);
+    out.position = turned(placement.position({p.x, p.y, p.z}), up);
     if (!compress::is_near(out.position)) return false;
     if (!mesh.mNormals) return true;
     const aiVector3D& n = mesh.mNormals[index];
     if (!are_finite({n.x, n.y, n.z})) return true;
-    out.normal = turned(place.normal({n.x, n.y, n.z}), up);
+    out.normal = turned(placement.normal({n.x, n.y, n.z}), up);
     double square = 0.0;
     for (const float x : out.normal) square += double{x} * double{x};
     const double scale = square > 0.0 && square < 1e30 ? 1.0 / std::sqrt(square) : 0.0;
@@ -39,15 +39,15 @@ bool corner_of(const aiMesh& mesh, const Placement& place, unsigned index, UpAxi
     return true;
 }
 
-void add_triangles(const aiMesh& mesh, const Placement& place, UpAxis up, Triangles& out) {
-    const bool mirrored = place.determinant() < 0.0; // what was outside stays outside
+void add_triangles(const aiMesh& mesh, const Placement& placement, UpAxis up, Triangles& out) {
+    const bool mirrored = placement.determinant() < 0.0; // what was outside stays outside
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
         const aiFace& face = mesh.mFaces[f];
         for (unsigned i = 1; i + 1 < face.mNumIndices; ++i) {
             Triangles::Corner corner[3];
-            const bool right = corner_of(mesh, place, face.mIndices[0], up, corner[0]) &&
-                               corner_of(mesh, place, face.mIndices[i], up, corner[mirrored ? 2 : 1]) &&
-                               corner_of(mesh, place, face.mIndices[i + 1], up, corner[mirrored ? 1 : 2]);
+            const bool right = corner_of(mesh, placement, face.mIndices[0], up, corner[0]) &&
+                               corner_of(mesh, placement, face.mIndices[i], up, corner[mirrored ? 2 : 1]) &&
+                               corner_of(mesh, placement, face.mIndices[i + 1], up, corner[mirrored ? 1 : 2]);
             if (right) out.corners.insert(out.corners.end(), corner, corner + 3);
         }
     }
@@ -58,8 +58,8 @@ void add_triangles(const aiMesh& mesh, const Placement& place, UpAxis up, Triang
 Triangles read_triangles(const std::string& path, UpAxis up) {
     if (!is_mesh(path)) throw input_error(path, "is no mesh (.obj, .ply) and no list of instances (.instances)");
     Triangles out;
-    for_each_mesh(path, [&](const aiMesh& mesh, const Placement& place) {
-        add_triangles(mesh, place, up, out);
+    for_each_mesh(path, [&](const aiMesh& mesh, const Placement& placement) {
+        add_triangles(mesh, placement, up, out);
         if (out.count() > most_triangles) throw input_error(path, "it has more than 2^26 triangles");
     });
     if (out.corners.empty()) throw input_error(path, "no triangle is in it whose corners are numbers below 1e30");

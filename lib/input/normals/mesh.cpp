@@ -48,14 +48,14 @@ void add_smooth_triangle(const aiVector3D normal[3], double area, NormalHistogra
 /// A mesh where it stands.
 class Placed {
 public:
-    Placed(const aiMesh& mesh, const Placement& place)
-        : mesh_(mesh), place_(place), side_(place.determinant() < 0.0 ? -1.0 : 1.0) {}
+    Placed(const aiMesh& mesh, const Placement& placement)
+        : mesh_(mesh), placement_(placement), side_(placement.determinant() < 0.0 ? -1.0 : 1.0) {}
 
     bool has_normals() const { return mesh_.mNormals != nullptr; }
     /// -1 where it is mirrored: triangles are wound the other way round.
     double side() const { return side_; }
-    aiVector3D vertex(unsigned i) const { return of(place_.position(of(mesh_.mVertices[i]))); }
-    aiVector3D normal(unsigned i) const { return of(place_.normal(of(mesh_.mNormals[i]))); }
+    aiVector3D vertex(unsigned i) const { return of(placement_.position(of(mesh_.mVertices[i]))); }
+    aiVector3D normal(unsigned i) const { return of(placement_.normal(of(mesh_.mNormals[i]))); }
     bool has_corners(const aiFace& face) const {
         return std::all_of(face.mIndices, face.mIndices + face.mNumIndices,
                            [&](unsigned corner) { return corner < mesh_.mNumVertices; });
@@ -66,7 +66,7 @@ private:
     static aiVector3D of(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
     const aiMesh& mesh_;
-    const Placement& place_;
+    const Placement& placement_;
     double side_;
 };
 
@@ -96,8 +96,8 @@ void add_polygon(const Placed& mesh, const aiFace& face, NormalHistogram& histog
 } // namespace
 
 void add_mesh_normals(const std::string& path, NormalHistogram& histogram) {
-    for_each_mesh(path, [&](const aiMesh& mesh, const Placement& place) {
-        const Placed placed(mesh, place);
+    for_each_mesh(path, [&](const aiMesh& mesh, const Placement& placement) {
+        const Placed placed(mesh, placement);
         for (unsigned f = 0; f < mesh.mNumFaces; ++f) // lines and points have no normal
             if (mesh.mFaces[f].mNumIndices >= 3) add_polygon(placed, mesh.mFaces[f], histogram);
     });

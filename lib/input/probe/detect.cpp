@@ -61,7 +61,7 @@ Detected by_square(const std::string& path, const Image& image, bool is_octahedr
     const Brightness brightness(image);
     if (is_disc(brightness))
         refuse(path, image,
-               "with black corners is an angular map or a mirror ball, and nothing in the image tells "
+               "with black corners is an angular map or a mirror ball, and nothing in the image shows "
                "which; set --projection angular (as Debevec's light probes) or --projection mirrorball");
     if (goes_on_across_folds(brightness))
         return {build::Layout::octahedral, "square, and it goes on across its folded borders"};

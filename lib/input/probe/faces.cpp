@@ -40,17 +40,17 @@ bool parse_order(const std::string& text, std::array<int, kFaces>& order) {
 }
 
 /// Where a face lies on the assembled map, in faces.
-struct Place {
+struct CrossPosition {
     int column, row;
 };
 
 // The horizontal cross has the front face in the middle, left and right beside it, the back face at the end: all as
 // Direct3D stores them. In OpenGL's right-handed frame +X is at the left of who looks at +Z.
-constexpr Place kDirectX[kFaces] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
-constexpr Place kOpenGl[kFaces] = {{0, 1}, {2, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
-constexpr Place kOpenExr[kFaces] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}};
+constexpr CrossPosition kDirectX[kFaces] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
+constexpr CrossPosition kOpenGl[kFaces] = {{0, 1}, {2, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
+constexpr CrossPosition kOpenExr[kFaces] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}};
 
-const Place* places_of(Faces::Frame frame) {
+const CrossPosition* cross_positions(Faces::Frame frame) {
     return frame == Faces::Frame::directx ? kDirectX : frame == Faces::Frame::opengl ? kOpenGl : kOpenExr;
 }
 
@@ -64,6 +64,11 @@ Image black(int width, int height) {
     image.height = height;
     image.rgb.assign(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0f);
     return image;
+}
+
+bool same_luminance(const Image& a, const Image& b) {
+    if (!a.luminance || !b.luminance) return a.luminance.has_value() == b.luminance.has_value();
+    return a.luminance->r == b.luminance->r && a.luminance->g == b.luminance->g && a.luminance->b == b.luminance->b;
 }
 
 /// Copies n x n texels from (x0, y0) of an image to (x1, y1) of another, maybe from the right to the left.
@@ -86,6 +91,8 @@ void check_sizes(const std::vector<std::string>& paths, const std::vector<Image>
         if (image.width != images[0].width)
             throw input_error(path, shape(image) + " is not as large as the first of the six faces, " +
                                         shape(images[0]) + "; scale it");
+        if (!same_luminance(image, images[0]))
+            throw input_error(path, "its primaries are not those of the first of the six faces; convert it");
     }
 }
 
@@ -108,8 +115,10 @@ Image assemble(const std::vector<std::string>& paths, std::vector<Image> images,
     const bool cross = faces.frame != Faces::Frame::openexr, mirrored = faces.frame == Faces::Frame::opengl;
     layout = cross ? build::Layout::horizontal_cross : build::Layout::stacked_cube;
     Image map = black(cross ? 4 * n : n, cross ? 3 * n : 6 * n);
+    map.luminance = images[0].luminance;
+    map.half = std::all_of(images.begin(), images.end(), [](const Image& image) { return image.half; });
     for (std::size_t i = 0; i < kFaces; ++i) {
-        const Place at = places_of(faces.frame)[faces.order[i]];
+        const CrossPosition at = cross_positions(faces.frame)[faces.order[i]];
         copy_face(images[i], 0, 0, map, at.column * n, at.row * n, n, mirrored);
         for (std::string& warning : images[i].warnings)
             if (std::find(map.warnings.begin(), map.warnings.end(), warning) == map.warnings.end())
@@ -126,6 +135,8 @@ std::vector<Image> cut_strip(const std::string& path, const Image& strip) {
         std::vector<Image> faces;
         for (int i = 0; i < static_cast<int>(kFaces); ++i) {
             faces.push_back(black(n, n));
+            faces.back().half = strip.half;
+            faces.back().luminance = strip.luminance;
             copy_face(strip, i % columns * n, i / columns * n, faces.back(), 0, 0, n, false);
         }
         faces[0].warnings = strip.warnings;

@@ -23,10 +23,10 @@ private:
 };
 
 /// Texel i of side 0..3 of a square of n x n, `inward` texels from the border.
-struct SidePlace {
+struct SidePosition {
     int x, y;
 };
-SidePlace on_side(int n, int side, int i, int inward) {
+SidePosition on_side(int n, int side, int i, int inward) {
     const int last = n - 1;
     const int x[4] = {i, last - inward, i, inward}, y[4] = {inward, i, last - inward, i};
     return {x[side], y[side]};
@@ -39,7 +39,7 @@ bool goes_on_across_folds(const Brightness& image) {
     if (n < 16 || n % 2 != 0) return false;
     const LogBrightness log(image);
     const auto at = [&](int side, int i, int inward) {
-        const SidePlace place = on_side(n, side, i, inward);
+        const SidePosition place = on_side(n, side, i, inward);
         return log.at(place.x, place.y);
     };
     // Sums of differences: across the fold; from a texel to the next one inward; between distant texels of a
@@ -67,8 +67,8 @@ bool back_face_is_upright(const Brightness& image) {
     double hanging = 0.0, upright = 0.0;
     for (int side = 0; side < 4; ++side)
         for (int i = 0; i < n; ++i) {
-            const SidePlace inside = on_side(n, side, i, 0), outside = on_side(n, side, i, -1);
-            const build::TexelPlace beside =
+            const SidePosition inside = on_side(n, side, i, 0), outside = on_side(n, side, i, -1);
+            const build::TexelPosition beside =
                 build::texel_beside(map, left + inside.x, top + inside.y, left + outside.x, top + outside.y);
             const double there = log.at(beside.column, beside.row);
             hanging += std::abs(there - log.at(left + inside.x, top + inside.y));

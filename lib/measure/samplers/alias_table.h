@@ -1,4 +1,4 @@
-// Texels drawn in constant time, as GPU renderers do.
+// Texels sampled in constant time, as GPU renderers do.
 #pragma once
 
 #include "measure/samplers/probe_grid.h"
@@ -10,7 +10,7 @@ namespace acdf::measure {
 
 /// Where the numbers come from that choose a texel and then either it or its alias.
 enum class AliasNumbers {
-    one, ///< both from u0: with random numbers of 24 bits large probes have texels that are never drawn
+    one, ///< both from u0: with random numbers of 24 bits large probes have texels that are never sampled
     two, ///< the texel from u0, the choice from u1
 };
 

@@ -1,4 +1,4 @@
-// What renderers commonly draw reflected directions with: baselines.
+// What renderers commonly sample reflected directions with: baselines.
 #pragma once
 
 #include "build/accuracy/brdf.h"

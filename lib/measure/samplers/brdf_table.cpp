@@ -27,7 +27,7 @@ double reflect(const double wo[3], const double h[3], double wi[3]) {
 
 /// Where in a bin or a cell views and half-vectors are taken. Borders are approached, not met: at theta_o = 90
 /// degrees nothing is reflected.
-const std::vector<double> centre = {0.5}, places = {1e-6, 0.5, 1.0 - 1e-6};
+const std::vector<double> centre = {0.5}, positions = {1e-6, 0.5, 1.0 - 1e-6};
 
 std::size_t step_of(double fraction, std::uint32_t steps) {
     return static_cast<std::size_t>(std::clamp(fraction * steps, 0.0, steps - 1.0));
@@ -59,8 +59,8 @@ void TabulatedBrdf::fill_bin(const compress::Reflected& reflected, BrdfTableKind
                              std::uint32_t phi_o) {
     const bool mean = kind == BrdfTableKind::mean, relative = size_.phi_o == 1;
     std::vector<double> square(size_.cells());
-    for (const double s : mean ? places : centre)
-        for (const double t : mean && !relative ? places : centre) {
+    for (const double s : mean ? positions : centre)
+        for (const double t : mean && !relative ? positions : centre) {
             double wo[3];
             direction(0.5 * ACDF_PI * (theta_o + s) / size_.theta_o,
                       relative ? 0.0 : 2.0 * ACDF_PI * (phi_o + t) / size_.phi_o - ACDF_PI, wo);
@@ -77,8 +77,8 @@ void TabulatedBrdf::add_view(const compress::Reflected& reflected, bool mean, co
     compress::Sum integral;
     for (std::size_t cell = 0; cell < size_.cells(); ++cell) {
         const std::size_t row = cell / size_.phi_h, column = cell % size_.phi_h;
-        for (const double y : mean ? places : centre)
-            for (const double x : mean ? places : centre) {
+        for (const double y : mean ? positions : centre)
+            for (const double x : mean ? positions : centre) {
                 if ((y == 0.5) != (x == 0.5)) continue; // corners and centre
                 double h[3], wi[3];
                 direction(0.5 * ACDF_PI * (static_cast<double>(row) + y) / size_.theta_h,

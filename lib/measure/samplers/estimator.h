@@ -24,7 +24,7 @@ public:
 
 /// What one estimate of a pixel used.
 struct Tally {
-    std::uint64_t samples = 0;     ///< drawn, also those in vain
+    std::uint64_t samples = 0;     ///< sampled, also those in vain
     std::uint64_t above = 0;       ///< of them above the horizon of the point's normal
     std::uint64_t shadow_rays = 0; ///< evaluations of the integrand, visibility included
 };

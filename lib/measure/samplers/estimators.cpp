@@ -22,22 +22,23 @@ bool counts(const AcdfDirectionSample& s, const ShadingPoint& point, Tally& tall
     return true;
 }
 
-/// Draws n samples of the set of numbers that has begun, several at once: use(sample) of those that may contribute.
+/// Samples n samples of the set of numbers that has begun, several at once: use(sample) of those that may
+/// contribute.
 template <class Use>
 void draw(const PointSampler& sampler, const ShadingPoint& point, std::uint64_t n, Random& random, Tally& tally,
           const Use& use) {
     constexpr std::size_t at_once = 64;
     double u[at_once][2];
-    AcdfDirectionSample drawn[at_once];
+    AcdfDirectionSample sampled[at_once];
     while (n > 0) {
         const std::size_t some = std::min<std::uint64_t>(n, at_once);
         for (std::size_t i = 0; i < some; ++i) {
             const std::array<double, 2> pair = random.pair();
             std::copy(pair.begin(), pair.end(), u[i]);
         }
-        sampler.samples(some, u, drawn);
+        sampler.samples(some, u, sampled);
         for (std::size_t i = 0; i < some; ++i)
-            if (counts(drawn[i], point, tally)) use(drawn[i]);
+            if (counts(sampled[i], point, tally)) use(sampled[i]);
         n -= some;
     }
 }
@@ -100,7 +101,8 @@ private:
         for (const std::uint32_t n : given_) all += n;
         const std::uint32_t others = all - given_[automatic_];
         const auto least = static_cast<double>(parts_.size() - 1);
-        const double own = std::round(static_cast<double>(parts_[automatic_].sampler->recommended_share()) * all);
+        const double own =
+            std::round(static_cast<double>(parts_[automatic_].sampler->recommended_light_share()) * all);
         parts_[automatic_].n = std::clamp(own, 1.0, std::max(1.0, all - least));
         const double left = all - parts_[automatic_].n;
         std::uint32_t before = 0; // sums are rounded, not what each gets: together it is all that is left
@@ -115,14 +117,14 @@ private:
     }
     /// w_i / (n_i p_i).
     double weight(const Part& own, const AcdfDirectionSample& s) const {
-        const double own_density = own.n * s.pdf;
+        const double own_pdf = own.n * s.pdf;
         double others = 0.0; // relative to the sample's own, so that squares stay in range
         for (const Part& part : parts_) {
             if (&part == &own) continue;
-            const double ratio = part.n * part.sampler->pdf(s.direction) / own_density;
+            const double ratio = part.n * part.sampler->pdf(s.direction) / own_pdf;
             others += power_ ? ratio * ratio : ratio;
         }
-        return 1.0 / (own_density * (1.0 + others));
+        return 1.0 / (own_pdf * (1.0 + others));
     }
 
     std::vector<Part> parts_;

@@ -1,7 +1,7 @@
 // What is done with samplers: one, several, or candidates of one that are resampled.
 //
-// Each sampler draws one set of numbers an estimate (Random). The integrand is 0 below the horizon: it is evaluated
-// above it alone.
+// Each sampler samples one set of numbers an estimate (Random). The integrand is 0 below the horizon: it is
+// evaluated above it alone.
 #pragma once
 
 #include "measure/samplers/estimator.h"
@@ -10,8 +10,8 @@
 
 namespace acdf::measure {
 
-/// The mean of f/p over n samples; those below the horizon and those that draw nothing count as 0. With the full
-/// CDF this is its use "with rejection below the horizon": what is rejected is lost. To draw others instead one
+/// The mean of f/p over n samples; those below the horizon and those that sample nothing count as 0. With the full
+/// CDF this is its use "with rejection below the horizon": what is rejected is lost. To sample others instead one
 /// would have to know each normal's share of the flux above its horizon, by which their density grows.
 class SingleEstimator : public Estimator {
 public:

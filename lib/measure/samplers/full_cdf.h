@@ -36,7 +36,7 @@ private:
     double total_ = 0.0;
 };
 
-/// Relative variance of one sample of f/p drawn by a FullCdf of the target, by exact summation over texels.
+/// Relative variance of one sample of f/p sampled by a FullCdf of the target, by exact summation over texels.
 double full_cdf_relative_variance(const compress::Target& target);
 
 } // namespace acdf::measure

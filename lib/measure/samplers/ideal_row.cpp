@@ -14,13 +14,13 @@ IdealRows::IdealRows(const compress::Target& target, double shares)
         for (std::uint32_t c = 0; c < target.columns; ++c) {
             const AcdfRange range[2] = {{c, c + 1, 0.0}, {r, r + 1, 0.0}};
             const double half[2] = {0.5, 0.5};
-            const AcdfDirectionSample middle = acdf_grid_place(&grid, range, half, 1.0);
+            const AcdfDirectionSample middle = acdf_grid_position(&grid, range, half, 1.0);
             middle_.push_back({middle.direction[0], middle.direction[1], middle.direction[2]});
         }
     }
 }
 
-/// What is drawn of a texel of radiance L: L - threshold, times the cosine.
+/// What is sampled of a texel of radiance L: L - threshold, times the cosine.
 double IdealRow::taken(const Texel& texel, double threshold) const {
     const double excess = static_cast<double>(rows_.radiance_[texel.index]) - threshold;
     return excess > 0.0 ? excess * texel.cosine * rows_.measure_[texel.index / rows_.grid_.columns()] : 0.0;

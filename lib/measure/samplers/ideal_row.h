@@ -41,13 +41,13 @@ public:
 private:
     struct Texel {
         std::uint32_t index;
-        double cosine, upto; ///< sum of the integrals of what is drawn, up to and with this one
+        double cosine, upto; ///< sum of the integrals of what is sampled, up to and with this one
     };
     double taken(const Texel& texel, double threshold) const;
     double fill();
 
     const IdealRows& rows_;
-    std::vector<Texel> texels_;  ///< that are drawn
+    std::vector<Texel> texels_;  ///< that are sampled
     std::vector<float> density_; ///< of all texels, sr^-1
 };
 

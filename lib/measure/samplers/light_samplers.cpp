@@ -4,7 +4,7 @@
 #include "measure/samplers/downsampled_cdf.h"
 #include "measure/samplers/hierarchical_warp.h"
 #include "measure/samplers/ideal_row.h"
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 #include "measure/samplers/point_samplers.h"
 #include "measure/samplers/tiling.h"
 #include "measure/surface_frame.h"
@@ -62,7 +62,7 @@ public:
         return view_.sample(below_one(u0), below_one(u1));
     }
     float pdf(const float wi[3]) const override { return view_.pdf(wi); }
-    float recommended_share() const override { return view_.recommended_share(); }
+    float recommended_light_share() const override { return view_.recommended_light_share(); }
 
 private:
     EnvironmentView view_;
@@ -71,25 +71,26 @@ private:
 struct LocalFile {
     const File& file;
     LocalEnvironmentView view{file.local()};
-    bool places;
-    LocalFile(const File& f, bool with_places) : file(f), places(with_places && view.has_places()) {}
+    bool visibility;
+    LocalFile(const File& f, bool with_visibility)
+        : file(f), visibility(with_visibility && view.has_visibility()) {}
     std::uint64_t bytes() const { return file.size(); }
 };
 
 class LocalPoint final : public PointSampler {
 public:
-    explicit LocalPoint(const LocalFile& file) : view_(file.view), places_(file.places), point_() {}
+    explicit LocalPoint(const LocalFile& file) : view_(file.view), visibility_(file.visibility), point_() {}
     void move_to(const ShadingPoint& point) override {
-        point_ = places_ ? view_.at(point.position, point.n) : view_.at(point.n);
+        point_ = visibility_ ? view_.at(point.position, point.n) : view_.at(point.n);
         std::copy_n(point.n, 3, normal_);
     }
     AcdfDirectionSample sample(double u0, double u1) const override { return view_.sample(point_, u0, u1); }
     float pdf(const float wi[3]) const override { return view_.pdf(point_, wi); }
-    float recommended_share() const override { return view_.recommended_share(normal_); }
+    float recommended_light_share() const override { return view_.recommended_light_share(normal_); }
 
 private:
     LocalEnvironmentView view_;
-    bool places_;
+    bool visibility_;
     AcdfLocalPoint point_;
     float normal_[3] = {0.0f, 0.0f, 1.0f};
 };

@@ -23,7 +23,8 @@ using LightSamplerPtr = std::unique_ptr<LightSampler>;
 
 // ---- of the light ----
 
-/// FullCdf. Directions below the horizon are drawn in vain, as where "rejection" rejects them and draws no others.
+/// FullCdf. Directions below the horizon are sampled in vain, as where "rejection" rejects them and samples no
+/// others.
 LightSamplerPtr full_cdf_sampler(const compress::Target& target);
 /// TilingOnTheFly, of columns x rows tiles.
 LightSamplerPtr tiling_sampler(const compress::Target& target, std::uint32_t columns, std::uint32_t rows);
@@ -51,17 +52,17 @@ LightSamplerPtr ideal_sampler(const compress::Target& target, double shares = 0.
 
 /// CosineHemisphere.
 LightSamplerPtr cosine_sampler();
-/// GgxSampler. Views below the surface draw nothing.
+/// GgxSampler. Views below the surface sample nothing.
 LightSamplerPtr ggx_sampler(double alpha);
-/// TabulatedBrdf. Views below the surface draw nothing.
+/// TabulatedBrdf. Views below the surface sample nothing.
 LightSamplerPtr tabulated_brdf_sampler(const TabulatedBrdf& table);
 
 // ---- of files ----
 
 /// A file of an environment, a local environment or a BRDF; std::invalid_argument for tables. `bytes` is the file's
-/// size. BRDFs are turned to the surface's frame (surface_frame); views below the surface draw nothing.
+/// size. BRDFs are turned to the surface's frame (surface_frame); views below the surface sample nothing.
 LightSamplerPtr file_sampler(const File& file);
-/// A local environment by normals alone, also where it tells places apart.
+/// A local environment by normals alone, also where it stores visibility cells.
 LightSamplerPtr normals_alone_sampler(const File& file);
 
 } // namespace acdf::measure

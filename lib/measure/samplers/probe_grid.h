@@ -32,7 +32,7 @@ public:
     /// in u and v.
     AcdfDirectionSample place(const AcdfRange range[2], double u0, double u1, double pdf) const {
         const double u[2] = {u0, u1};
-        AcdfDirectionSample out = acdf_grid_place(&grid_, range, u, 1.0);
+        AcdfDirectionSample out = acdf_grid_position(&grid_, range, u, 1.0);
         out.pdf = static_cast<float>(pdf);
         return out;
     }

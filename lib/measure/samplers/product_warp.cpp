@@ -60,17 +60,16 @@ private:
     double corner_[2][2] = {{1.0, 1.0}, {1.0, 1.0}};
 };
 
-/// A file of light at one point: what is drawn for a pair of numbers, and the numbers that draw a direction.
+/// A file of light at one point: what is sampled for a pair of numbers, and the numbers that sample a direction.
 class LightAtPoint {
 public:
     explicit LightAtPoint(const File& file) : local_(), is_local_(file.kind() == ACDF_KIND_LOCAL) {
         if (is_local_) local_ = file.local().data();
         else if (file.kind() == ACDF_KIND_ENVIRONMENT) local_.environment = file.environment().data();
         else throw std::invalid_argument("the light of a product is an environment or a local environment");
-        if (local_.cosine_share > 0.0 || file.company())
-            throw std::invalid_argument("a file for a company has no support alone");
-        if (local_.fast.grid)
-            throw std::invalid_argument("a file of the fast shape tells no random numbers of a direction");
+        if (local_.cosine_share > 0.0 || file.partner())
+            throw std::invalid_argument("a file for an MIS partner has no support alone");
+        if (local_.fast.grid) throw std::invalid_argument("a file of the fast shape has no inverse");
     }
     bool has_cosine() const { return is_local_; }
     void move_to(const float normal[3]) {
@@ -104,20 +103,20 @@ public:
     }
 
 private:
-    /// Lights come before the mixture in u[0] (acdf_local_draw_light).
+    /// Lights come before the mixture in u[0] (acdf_local_sample_bright_tile).
     bool find(const std::uint32_t* square, AcdfRange* range, AcdfStratum* strata) const {
         double probability;
         const std::uint32_t tile =
             acdf_blend_find_tile(&local_.blend, &point_.mix, square, range, strata, &probability);
         if (probability > 0.0) {
-            const double share = point_.lights / point_.sum;
+            const double share = point_.bright_tiles / point_.sum;
             strata[0] = {share + (1.0 - share) * strata[0].low, (1.0 - share) * strata[0].width};
         } else {
             double below = 0.0, weight = 0.0;
             std::uint32_t k = 0;
-            for (; k < local_.light_count && local_.lights[k].tile != tile; ++k)
-                below += std::max(0.0, acdf_light_weight(&local_.lights[k], &point_));
-            if (k < local_.light_count) weight = acdf_light_weight(&local_.lights[k], &point_);
+            for (; k < local_.bright_tile_count && local_.bright_tiles[k].tile != tile; ++k)
+                below += std::max(0.0, acdf_bright_tile_weight(&local_.bright_tiles[k], &point_));
+            if (k < local_.bright_tile_count) weight = acdf_bright_tile_weight(&local_.bright_tiles[k], &point_);
             if (!(weight > 0.0)) return false;
             strata[0] = {below / point_.sum, weight / point_.sum};
             strata[1] = {0.0, 1.0};

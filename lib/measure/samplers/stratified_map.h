@@ -9,20 +9,20 @@
 
 namespace acdf::measure {
 
-/// How directions are drawn in a stratum.
+/// How directions are sampled in a stratum.
 enum class Jitter {
     solid_angle, ///< uniformly, as published
     radiance, ///< by radiance: what a stratum's light varies then makes no noise, and nothing is biased, as it is
               ///< where the published method integrates that light beforehand
 };
 
-/// The strata of stratify() with the tables to draw from each.
+/// The strata of stratify() with the tables to sample from each.
 class StratifiedMap {
 public:
     StratifiedMap(const compress::Target& target, std::uint32_t strata, Jitter jitter = Jitter::solid_angle);
 
     std::size_t strata() const { return first_.size() - 1; }
-    /// One direction of a stratum; pdf is that within it, 0 where it has no light to draw by. All u in [0, 1).
+    /// One direction of a stratum; pdf is that within it, 0 where it has no light to sample by. All u in [0, 1).
     AcdfDirectionSample sample(std::size_t stratum, double choice, double u0, double u1) const;
     std::uint64_t bytes() const;
 

@@ -112,7 +112,7 @@ AcdfDirectionSample TilingOnTheFly::sample(const Point& point, double u0, double
     const std::vector<double>& sums = point.cumulative;
     const double total = sums.back();
     if (!(total > 0.0)) return {{0.0f, 0.0f, 1.0f}, 0.0f};
-    // The first sum above u1: tiles of weight 0 are never drawn.
+    // The first sum above u1: tiles of weight 0 are never sampled.
     const double scaled = std::min(u1 * total, total * (1.0 - 0x1p-53));
     const auto t =
         static_cast<std::size_t>(std::upper_bound(sums.begin() + 1, sums.end(), scaled) - (sums.begin() + 1));

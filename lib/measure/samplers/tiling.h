@@ -1,4 +1,4 @@
-// The strongest known rival of a local environment map: tiles of the probe, weighted anew at each shading point.
+// The strongest known baseline of a local environment map: tiles of the probe, weighted anew at each shading point.
 #pragma once
 
 #include "build/accuracy/texel_cosines.h"
@@ -16,7 +16,7 @@ namespace acdf::measure {
 
 /// Tiling on the fly, the idea of LuxCore's visibility cache for environment lights: a probe L in columns x rows
 /// tiles. For a normal, each tile gets the weight flux * (largest cosine that any of its directions has); a
-/// tile is drawn by its weight, a direction by the tile's own full-resolution CDF. The largest cosine, never 0
+/// tile is sampled by its weight, a direction by the tile's own full-resolution CDF. The largest cosine, never 0
 /// where the tile reaches above the horizon, is what keeps the estimate unbiased. Tiles of the octahedral square
 /// take that of a cone around them (SquareCone), which is larger.
 ///

@@ -14,7 +14,7 @@ MeshStage::MeshStage(std::shared_ptr<const input::MeshSurface> surface, bool tur
                      std::uint32_t count)
     : matte_(input::open_brdf("lambert")) {
     if (!target.peaks.empty() || target.parameterization != ACDF_PARAM_LATLONG)
-        throw std::invalid_argument("places are measured under a lat-long probe with nearest lookup");
+        throw std::invalid_argument("positions are measured under a lat-long probe with nearest lookup");
     for (const float value : target.values) rgb_.insert(rgb_.end(), 3, value);
     scene_.light = {target.columns, target.rows, rgb_.data()};
     scene_.materials = {{matte_.get(), {1.0, 1.0, 1.0}}};

@@ -1,4 +1,5 @@
-// A mesh as a matte scene under the light of a probe, and points all over it: where files of places are measured.
+// A mesh as a matte scene under the light of a probe, and points all over it: where files with visibility cells are
+// measured.
 #pragma once
 
 #include "compress/target.h"
@@ -36,7 +37,7 @@ private:
 /// decide.
 struct StageVariances {
     std::vector<std::vector<double>> of_points; ///< samplers x points with light
-    std::vector<std::uint64_t> lost;            ///< one a sampler: texels with light that are never drawn
+    std::vector<std::uint64_t> lost;            ///< one a sampler: texels with light that are never sampled
 };
 
 /// By summation over texels (PointSums). Uses all cores; the result does not depend on their number. `progress`, if

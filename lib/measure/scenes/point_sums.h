@@ -44,7 +44,7 @@ struct PointSums {
     double mean = 0.0; ///< the integral of f, the luminance that is reflected
     /// One each of those measured. Variance: of an estimate of one sample, n have an n-th of it.
     std::vector<double> variance;
-    std::vector<std::uint32_t> lost; ///< texels with light that are never drawn
+    std::vector<std::uint32_t> lost; ///< texels with light that are never sampled
 };
 
 /// Each texel counts with f in its middle (a shadow ray) and its solid angle.

@@ -50,7 +50,7 @@ inline Vec3 position_of(const ShadingPoint& point, bool turned) {
 }
 
 inline void check_portals(const std::vector<Portal>& portals) {
-    if (portals.empty()) throw std::invalid_argument("the scene tells no portals");
+    if (portals.empty()) throw std::invalid_argument("the scene has no portals");
 }
 
 } // namespace acdf::measure

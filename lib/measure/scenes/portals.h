@@ -1,6 +1,7 @@
 // Portals: rectangles, told by hand, that light comes through. What renderers have for rooms, to compare with.
 //
-// Directions that reach no portal are never drawn: where light comes another way, these samplers are biased alone.
+// Directions that reach no portal are never sampled: where light comes another way, these samplers are biased
+// alone.
 #pragma once
 
 #include "compress/target.h"
@@ -18,7 +19,7 @@ LightSamplerPtr uniform_portal_sampler(std::vector<Portal> portals, bool turned)
 
 /// Bitterli, Novak, Jarosz, "Portal-Masked Environment Map Sampling" (EGSR 2015): for each direction that portals
 /// face, the light of `target` (a lat-long probe of one channel) on a map in which a portal is an upright rectangle
-/// from wherever it is seen, as a summed-area table; light is drawn from the windows that the portals cut out of
+/// from wherever it is seen, as a summed-area table; light is sampled from the windows that the portals cut out of
 /// it. The density is exact. `size`: cells along each axis of the map. Throws std::invalid_argument where there is
 /// no portal, or no cell.
 LightSamplerPtr windowed_portal_sampler(const compress::Target& target, const std::vector<Portal>& portals,

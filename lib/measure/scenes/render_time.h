@@ -14,7 +14,7 @@ struct TimingOptions {
     Numbers numbers = Numbers::independent;
 };
 
-/// Nanoseconds of processor time of one estimate at one point, everything included: moving to the point, drawing,
+/// Nanoseconds of processor time of one estimate at one point, everything included: moving to the point, sampling,
 /// looking up light and BRDF, shadow rays. [estimator][round]. One thread; in each round the estimators take turns,
 /// so that what else the machine does meets all of them. `estimators` as for render(), one list an entry.
 std::vector<std::vector<double>> time_estimates(const std::vector<ScenePoint>& points,

@@ -69,8 +69,8 @@ SurfacePoint at_shape(const Box3& box, double u, double v, std::uint64_t) {
         }
 }
 
-compress::PlacePoint place_point(const SurfacePoint& surface) {
-    compress::PlacePoint out;
+compress::VisibilityPoint place_point(const SurfacePoint& surface) {
+    compress::VisibilityPoint out;
     for (std::size_t k = 0; k < 3; ++k) {
         out.position[k] = static_cast<float>(surface.position[k]);
         out.normal[k] = static_cast<float>(surface.n[k]);
@@ -82,14 +82,14 @@ Vec3 vector(const std::array<float, 3>& v) { return {double{v[0]}, double{v[1]},
 
 } // namespace
 
-compress::PlaceScene place_scene(const Geometry& geometry) {
+compress::VisibilityScene visibility_scene(const Geometry& geometry) {
     std::vector<double> upto; // shares of the objects, summed
     double sum = 0.0;
     for (const Object& object : geometry.objects)
         upto.push_back(sum +=
                        object.seen ? std::visit([](const auto& s) { return weight(s); }, object.shape) : 0.0);
-    compress::PlaceScene out;
-    out.points = [&geometry, upto](std::uint64_t index, compress::PlacePoint& point) {
+    compress::VisibilityScene out;
+    out.points = [&geometry, upto](std::uint64_t index, compress::VisibilityPoint& point) {
         const auto number = static_cast<std::uint32_t>(index + 1);
         const double at =
             std::fmod((number + 0.5) * 0.6180339887498949, 1.0) * upto.back(); // of Kronecker's sequence
@@ -101,7 +101,7 @@ compress::PlaceScene place_scene(const Geometry& geometry) {
                        geometry.objects[object].shape));
         return geometry.objects[object].seen && upto.back() > 0.0;
     };
-    out.occluded = [&geometry](const compress::PlacePoint& point, const std::array<float, 3>& direction) {
+    out.occluded = [&geometry](const compress::VisibilityPoint& point, const std::array<float, 3>& direction) {
         Vec3 position = vector(point.position); // rounded: a little above where it may have come to lie
         const double size = std::max({std::fabs(position[0]), std::fabs(position[1]), std::fabs(position[2]), 1.0});
         position = position + 1e-6 * size * vector(point.normal);

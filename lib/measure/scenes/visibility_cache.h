@@ -12,7 +12,7 @@
 namespace acdf::measure {
 
 /// A point of the picture that has none near with a normal like its own becomes a cache point: it sends rays to
-/// each tile, drawn by the light in it, and keeps which share of them is not hidden. Other points take the shares
+/// each tile, sampled by the light in it, and keeps which share of them is not hidden. Other points take the shares
 /// of the nearest one. What the rays missed is not lost: a floor is added to all shares.
 class VisibilityCache {
 public:

@@ -11,7 +11,7 @@ namespace {
 
 /// Of every cell beside its light, so that none with light that the sums miss has density 0: a share of the mean.
 constexpr double kFloor = 1e-3;
-/// The light of a cell is looked up at this many places along each axis.
+/// The light of a cell is looked up at this many points along each axis.
 constexpr int kLookups = 4;
 
 /// The hemisphere that a portal faces, on a square of cells: x and y are the angles of a direction with the

@@ -53,7 +53,7 @@ def build_environment(
     uniform_if_black: bool = False,
     fit: str = "variance",
     max_weight: float = 0.0,
-    company: Optional[str] = None,
+    partner: Optional[str] = None,
     heuristic: Optional[str] = None,
     shares: Tuple[float, float] = (1.0, 1.0),
     normals: Optional[Any] = None,
@@ -70,7 +70,7 @@ def build_environment(
     budget, cells, variance: one goal: at most so many bytes ("64KiB"), about so many cells (4096, the default), or at most
         this relative variance.
     projection: "latlong", "angular", "mirrorball", "vertical-cross", "horizontal-cross", "stacked-cube", "octahedral".
-    for_renderer: a name of `acdf.renderers`: sets domain, filter, wrap and channel, and the company and heuristic of its path
+    for_renderer: a name of `acdf.renderers`: sets domain, filter, wrap and channel, and the partner and heuristic of its path
         integrator, but for those that are given. Swap axes by `acdf.renderers[name].to_light` and `from_light`.
     domain: the grid of the fit: "source" (the default), "latlong" or "octahedral".
     filter: how the renderer looks the map up: "nearest" (the default) or "bilinear". Set it right: else there may be bias.
@@ -81,8 +81,8 @@ def build_environment(
         the largest value of its channel, and the others are 0; or "error".
     fit: "variance", "cdf", "pdf" or "uniform".
     max_weight: the largest weight of a sample over the mean, at least 1; 0: no bound.
-    company, heuristic, shares, normals, normal_weights: the sampler that it is to be combined with, "none" (the default),
-        "cosine", "brdf" or "mean"; "balance" (the default) or "power"; samples of the file and of the company, in proportion;
+    partner, heuristic, shares, normals, normal_weights: the sampler that it is to be combined with, "none" (the default),
+        "cosine", "brdf" or "mean"; "balance" (the default) or "power"; samples of the file and of the partner, in proportion;
         the normals of the scene.
     compress: "none", "zlib" or "planes".
     threads: at most so many; 0: all cores.
@@ -172,7 +172,7 @@ def build_local(
     cosine_share: float = 0.0,
     sharing: bool = True,
     shape: str = "auto",
-    company: Optional[str] = None,
+    partner: Optional[str] = None,
     heuristic: Optional[str] = None,
     shares: Tuple[float, float] = (1.0, 1.0),
     compress: str = "none",
@@ -186,10 +186,10 @@ def build_local(
     subdivisions, tiles: how many bins of normals (4 n^2 + 2) and shared tiles; None: as suits the size.
     normals, normal_weights: only what a scene has, of shape (n, 3), and how often each occurs; None: all normals.
     max_weight: of the samples of all normals that accuracy is measured for.
-    cosine_share: of samples that are drawn around the normal instead, in [0, 0.99].
+    cosine_share: of samples that are taken around the normal instead, in [0, 0.99].
     sharing: bins share tiles; else each has a tree of its own.
-    shape: "small", the least noise for its bytes, or "fast", a draw from which takes two thirds of the time and a density half.
-        Fast files share tiles, and have neither max_weight nor a company. "auto" makes both, and chooses fast where it has no
+    shape: "small", the least noise for its bytes, or "fast", a sample from which takes two thirds of the time and a density half.
+        Fast files share tiles, and have neither max_weight nor an MIS partner. "auto" makes both, and chooses fast where it has no
         more noise after the same time.
     """
     return open(_acdf.build_local(image, _options({k: v for k, v in locals().items() if k != "image"})))

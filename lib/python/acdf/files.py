@@ -1,9 +1,9 @@
-"""Open files: densities to draw from and to evaluate, for arrays.
+"""Open files: densities to sample from and to evaluate, for arrays.
 
 Random numbers `u` are float64 in [0, 1] of shape (..., 2); directions, normals and views are float32 of shape (..., 3). Such
 arrays are used as they lie if they are contiguous, others are converted. Results have the leading shape of what was asked.
 `out` takes arrays of such results, of the right type and contiguous, to be written to: large new ones cost time.
-Loops run without the interpreter's lock, so several threads may draw at once.
+Loops run without the interpreter's lock, so several threads may sample at once.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ Path = Union[str, "os.PathLike[str]"]
 
 
 class Samples(NamedTuple):
-    """What was drawn: directions (of tables points), and the density of each.
+    """What was sampled: directions (of tables points), and the density of each.
 
-    Where nothing can be drawn the density is 0; the direction is 0 then, a point NaN.
+    Where nothing can be sampled the density is 0; the direction is 0 then, a point NaN.
     """
 
     direction: np.ndarray
@@ -60,9 +60,9 @@ class File:
         >>> acdf.build_environment(np.ones((8, 16)), cells=64).info()["axes"][0]["name"]
         'phi'
         """
-        out = {key: value for key, value in self._description.items() if key not in ("metadata", "company")}
-        if self._description["company"] is not None:
-            out["company"] = self._description["company"]
+        out = {key: value for key, value in self._description.items() if key not in ("metadata", "partner")}
+        if self._description["partner"] is not None:
+            out["partner"] = self._description["partner"]
         groups: Dict[str, Dict[str, Any]] = {"source": {}, "accuracy": {}, "metadata": {}}
         for key, value in self._description["metadata"].items():
             group, _, name = key.partition(".")
@@ -78,9 +78,9 @@ class File:
         return out
 
     @property
-    def needs_company(self) -> bool:
+    def requires_mis(self) -> bool:
         """Whether it is to be combined with another sampler, by multiple importance sampling: used alone it is biased."""
-        return self._description["company"] is not None
+        return self._description["partner"] is not None
 
     def to_bytes(self) -> bytes:
         """The whole file."""
@@ -102,7 +102,7 @@ class Environment(File):
     """An environment map: one density over the sphere."""
 
     def sample(self, u: Any, *, out: Optional[Samples] = None) -> Samples:
-        """Draws a direction for each pair of numbers. u[..., 0] moves along phi, u[..., 1] along theta.
+        """Samples a direction for each pair of numbers. u[..., 0] moves along phi, u[..., 1] along theta.
 
         >>> import acdf, numpy as np
         >>> sky = acdf.build_environment(np.ones((8, 16)), cells=64)
@@ -112,7 +112,7 @@ class Environment(File):
         return Samples(*self._handle.sample(None, u, tuple(out or _NEW)))
 
     def pdf(self, directions: Any, *, out: Optional[np.ndarray] = None) -> np.ndarray:
-        """The density in sr^-1 with which `sample` draws each direction, float32; 0 where none falls, and for vectors that
+        """The density in sr^-1 with which `sample` samples each direction, float32; 0 where none falls, and for vectors that
         are NaN or not of unit length.
 
         >>> import acdf, numpy as np
@@ -123,7 +123,7 @@ class Environment(File):
         return self._handle.pdf(None, directions, out)
 
     def invert(self, directions: Any) -> np.ndarray:
-        """The numbers u that draw each direction; NaN where the density is 0."""
+        """The numbers u that sample each direction; NaN where the density is 0."""
         return self._handle.invert(None, directions)
 
 
@@ -135,7 +135,7 @@ class LocalEnvironment(File):
     """
 
     def sample(self, normals: Any, u: Any, *, out: Optional[Samples] = None) -> Samples:
-        """Draws directions. Density 0 where the normal is zero or NaN, or nothing shines on it; a direction below the
+        """Samples directions. Density 0 where the normal is zero or NaN, or nothing shines on it; a direction below the
         horizon counts as 0.
 
         >>> import acdf, numpy as np
@@ -158,12 +158,12 @@ class Brdf(File):
     """A density of wi for every wo, both unit vectors in the surface's frame, z its normal. It follows what the surface
     reflects, times the cosine.
 
-    The leading shape of `wo` begins that of `u` or `wi`, as for normals. Arrays of some thousands are drawn by vector
+    The leading shape of `wo` begins that of `u` or `wi`, as for normals. Arrays of some thousands are sampled by vector
     instructions, bit for bit the same, with tables of about four times the file.
     """
 
     def sample(self, wo: Any, u: Any, *, out: Optional[Samples] = None) -> Samples:
-        """Draws wi. Density 0 where wo is not a unit vector above the surface; wi below it counts as 0."""
+        """Samples wi. Density 0 where wo is not a unit vector above the surface; wi below it counts as 0."""
         return Samples(*self._handle.sample(wo, u, tuple(out or _NEW)))
 
     def pdf(self, wo: Any, wi: Any, *, out: Optional[np.ndarray] = None) -> np.ndarray:
@@ -171,7 +171,7 @@ class Brdf(File):
         return self._handle.pdf(wo, wi, out)
 
     def invert(self, wo: Any, wi: Any) -> np.ndarray:
-        """The numbers u that draw wi; NaN where the table's density is 0."""
+        """The numbers u that sample wi; NaN where the table's density is 0."""
         return self._handle.invert(wo, wi)
 
     def albedo(self, wo: Any) -> np.ndarray:
@@ -187,7 +187,7 @@ class Table(File):
     """
 
     def sample(self, u: Any, index: Optional[Any] = None, *, out: Optional[Samples] = None) -> Samples:
-        """Draws points, in the units of the axes; the density is per product of those.
+        """Samples points, in the units of the axes; the density is per product of those.
 
         >>> import acdf, numpy as np
         >>> table = acdf.build_table(np.arange(1.0, 65.0).reshape(8, 8), ranges=[(0, 1), (0, 1)])
@@ -202,7 +202,7 @@ class Table(File):
         return self._handle.pdf(index, x, out)
 
     def invert(self, x: Any, index: Optional[Any] = None) -> np.ndarray:
-        """The numbers u that draw each point; NaN where the density is 0."""
+        """The numbers u that sample each point; NaN where the density is 0."""
         return self._handle.invert(index, x)
 
 

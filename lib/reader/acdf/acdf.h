@@ -1,4 +1,4 @@
-/* The C interface of the reader: open a file here, then draw and evaluate with acdf/sample.h, local.h, brdf.h and
+/* The C interface of the reader: open a file here, then sample and evaluate with acdf/sample.h, local.h, brdf.h and
  * table.h, which are inlined, or with acdf/linked.h, which languages without a C compiler can call.
  *
  *   AcdfError error;

@@ -2,9 +2,9 @@
  * CUDA/HIP/SYCL, with the same contract (SPEC.md §5.6, §6.7).
  *
  * Boxes are split in two until tiles are left. Splits and tiles are stored once; each bin has a *row* of one byte a
- * split: the probability of its lower part. What a caller draws from is a *mixture* of up to four rows, walked side
- * by side: its density is exactly the weighted sum of theirs, at the price of one more byte read a split and row.
- * Within a tile a tree of curves refines, for all bins alike. */
+ * split: the probability of its lower part. What a caller samples from is a *mixture* of up to four rows, walked
+ * side by side: its density is exactly the weighted sum of theirs, at the price of one more byte read a split and
+ * row. Within a tile a tree of curves refines, for all bins alike. */
 #ifndef ACDF_BLEND_H
 #define ACDF_BLEND_H
 
@@ -179,7 +179,7 @@ ACDF_FN uint32_t acdf_blend_root(const AcdfBlend* blend) {
     return blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
 }
 
-/* Draws a tile below `node` (a split, or a tile with its flag) whose box is `range`: of a mixture whose sum,
+/* Samples a tile below `node` (a split, or a tile with its flag) whose box is `range`: of a mixture whose sum,
  * positive, is what the rows give to it. u and range as in acdf_tree_sample. Returns the tile's number;
  * *probability becomes its share of the mixture. */
 ACDF_FN uint32_t acdf_blend_sample_below(const AcdfBlend* blend, const AcdfMixture* mix, uint32_t node, double* u,
@@ -196,7 +196,7 @@ ACDF_FN uint32_t acdf_blend_sample_below(const AcdfBlend* blend, const AcdfMixtu
     }
 }
 
-/* Draws a tile of a mixture. */
+/* Samples a tile of a mixture. */
 ACDF_FN uint32_t acdf_blend_sample_tile(const AcdfBlend* blend, const AcdfMixture* mix, double* u, AcdfRange* range,
                                         double* probability) {
     return acdf_blend_sample_below(blend, mix, acdf_blend_root(blend), u, range, probability);
@@ -227,7 +227,7 @@ ACDF_FN uint32_t acdf_blend_find_tile(const AcdfBlend* blend, const AcdfMixture*
     return acdf_blend_find_below(blend, mix, acdf_blend_root(blend), square, range, strata, probability);
 }
 
-/* Draws a cell of the mixture, as acdf_tree_sample does of a tree. Returns its probability, > 0. */
+/* Samples a cell of the mixture, as acdf_tree_sample does of a tree. Returns its probability, > 0. */
 ACDF_FN double acdf_blend_sample(const AcdfBlend* blend, const AcdfMixture* mix, double* u, AcdfRange* range) {
     double probability;
     const uint32_t tile = acdf_blend_sample_tile(blend, mix, u, range, &probability);

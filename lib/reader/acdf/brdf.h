@@ -26,7 +26,7 @@ ACDF_FN void acdf_brdf_whole(const AcdfBrdf* brdf, AcdfRange range[2]) {
 }
 
 /* Finds the cell of a place; `strata` may be null. Returns its probability, 0 where no sample can fall. */
-ACDF_FN double acdf_brdf_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfBrdfPlace* place,
+ACDF_FN double acdf_brdf_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfBrdfPosition* place,
                               AcdfRange range[2], AcdfStratum* strata) {
     uint32_t square[2];
     square[0] = acdf_brdf_step(place->position[0], brdf->columns);
@@ -43,17 +43,17 @@ ACDF_FN double acdf_brdf_fraction(const AcdfRange* range, double position) {
 }
 
 /* Density of wi: that of its place in a cell of probability p (0: none), and the cosine's share. */
-ACDF_FN float acdf_brdf_density(const AcdfBrdf* brdf, double p, const AcdfRange range[2],
-                                const AcdfBrdfPlace* place, const float wi[3]) {
+ACDF_FN float acdf_brdf_cell_pdf(const AcdfBrdf* brdf, double p, const AcdfRange range[2],
+                                 const AcdfBrdfPosition* place, const float wi[3]) {
     const double floor = (double)brdf->views->diffuse_share;
     double pdf = 0.0;
     int axis;
     if (p > 0.0) {
         const double area = (double)(range[0].high - range[0].low) * (double)(range[1].high - range[1].low);
-        pdf = acdf_brdf_mean_density(brdf, p, area, place);
+        pdf = acdf_brdf_mean_pdf(brdf, p, area, place);
         for (axis = 0; axis < 2; ++axis)
             if (range[axis].tilt != 0.0)
-                pdf *= acdf_tilt_density(range[axis].tilt, acdf_brdf_fraction(&range[axis], place->position[axis]));
+                pdf *= acdf_tilt_pdf(range[axis].tilt, acdf_brdf_fraction(&range[axis], place->position[axis]));
     }
     if (floor > 0.0) pdf = (1.0 - floor) * pdf + (wi[2] > 0.0f ? floor / ACDF_PI * (double)wi[2] : 0.0);
     else if (!(p > 0.0)) return 0.0f;
@@ -62,13 +62,13 @@ ACDF_FN float acdf_brdf_density(const AcdfBrdf* brdf, double p, const AcdfRange 
 
 /* acdf_brdf_pdf for a view that serves several directions. */
 ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3]) {
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     AcdfRange range[2];
     double sign, p;
     if (brdf->tables && brdf->tables->grid) return acdf_brdf_pair_pdf(brdf, view, wi);
-    if (!acdf_brdf_place(brdf, view, wi, &place, &sign)) return 0.0f;
+    if (!acdf_brdf_half_position(brdf, view, wi, &place, &sign)) return 0.0f;
     p = acdf_brdf_find(brdf, view, &place, range, 0);
-    return acdf_brdf_density(brdf, p, range, &place, wi);
+    return acdf_brdf_cell_pdf(brdf, p, range, &place, wi);
 }
 
 /* The same by vectors of this process's processor, which the linked library has: files that it opens name them. Of
@@ -86,7 +86,7 @@ enum { ACDF_BRDF_FEWEST = 2 }; /* fewer are not worth vectors */
 ACDF_FN void acdf_brdf_view_pdfs(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], size_t count,
                                  float* out) {
     enum { TOGETHER = 16 };
-    AcdfBrdfPlace place[TOGETHER];
+    AcdfBrdfPosition place[TOGETHER];
     uint32_t cell[TOGETHER];
     int found[TOGETHER];
     size_t first, i;
@@ -111,7 +111,7 @@ ACDF_FN void acdf_brdf_view_pdfs(const AcdfBrdf* brdf, const AcdfBrdfView* view,
     }
 }
 
-/* Density per steradian with which acdf_brdf_sample draws wi for wo. 0 where none falls, for wo below the surface
+/* Density per steradian with which acdf_brdf_sample samples wi for wo. 0 where none falls, for wo below the surface
  * and for directions that are NaN or not of unit length. */
 ACDF_FN float acdf_brdf_pdf(const AcdfBrdf* brdf, const float wo[3], const float wi[3]) {
     AcdfBrdfView view;
@@ -153,12 +153,12 @@ ACDF_FN int acdf_brdf_begin(const AcdfBrdf* brdf, const AcdfBrdfView* view, doub
     return !brdf->blend.tiles || view->mix.count > 0;
 }
 
-/* Places wi in a cell of probability p; u is what is left of the random numbers. */
+/* Visibility wi in a cell of probability p; u is what is left of the random numbers. */
 ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfRange range[2],
                                           const double u[2], double sign, double p) {
     const double nothing[2] = {0.0, 0.0};
     AcdfDirectionSample out;
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     double t[2], position[2], reach[2], half[3];
     int axis, attempt;
     for (axis = 0; axis < 2; ++axis) {
@@ -172,11 +172,11 @@ ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfVi
         acdf_brdf_half(view, out.direction, half, &place)) {
         place.position[0] = position[0];
         place.position[1] = position[1];
-        out.pdf = acdf_brdf_density(brdf, p, range, &place, out.direction);
+        out.pdf = acdf_brdf_cell_pdf(brdf, p, range, &place, out.direction);
         return out;
     }
     /* Near the border rounding wi to float may carry it over: then it moves towards the middle, so that pdf() finds
-     * the cell that it was drawn in. */
+     * the cell that it was sampled in. */
     for (attempt = 0; attempt < 32; ++attempt) {
         double side;
         for (axis = 0; axis < 2; ++axis) {
@@ -184,9 +184,9 @@ ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfVi
             t[axis] = 0.5 + 0.75 * (t[axis] - 0.5);
         }
         acdf_brdf_reflect(brdf, view, position, sign, out.direction, reach);
-        if (acdf_brdf_place(brdf, view, out.direction, &place, &side) &&
+        if (acdf_brdf_half_position(brdf, view, out.direction, &place, &side) &&
             acdf_brdf_inside(range, place.position, nothing)) {
-            out.pdf = acdf_brdf_density(brdf, p, range, &place, out.direction);
+            out.pdf = acdf_brdf_cell_pdf(brdf, p, range, &place, out.direction);
             return out;
         }
     }
@@ -233,7 +233,7 @@ ACDF_FN void acdf_brdf_view_samples(const AcdfBrdf* brdf, const AcdfBrdfView* vi
     for (i = 0; i < count; ++i) out[i] = acdf_brdf_view_sample(brdf, view, u[i][0], u[i][1]);
 }
 
-/* A direction about as acdf_brdf_view_sample draws it, to look where much is reflected; pdf 0: none. */
+/* A direction about as acdf_brdf_view_sample samples it, to look where much is reflected; pdf 0: none. */
 ACDF_FN AcdfDirectionSample acdf_brdf_view_about(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0,
                                                  double u1) {
 #ifdef ACDF_BRDF_GUESSES
@@ -251,8 +251,8 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_brdf_walk(const AcdfBrdf* brdf, con
     return acdf_brdf_view(brdf, wo, &view) ? acdf_brdf_view_walk(brdf, &view, u0, u1) : nothing;
 }
 
-/* Draws wi for wo; u0 (phi_h) and u1 (theta_h) in [0, 1]; values outside are clamped, NaN counts as 0. Monotone in
- * each of them within a cell. pdf 0 (and no direction) for wo that are not unit vectors above the surface. */
+/* Samples wi for wo; u0 (phi_h) and u1 (theta_h) in [0, 1]; values outside are clamped, NaN counts as 0. Monotone
+ * in each of them within a cell. pdf 0 (and no direction) for wo that are not unit vectors above the surface. */
 ACDF_FN AcdfDirectionSample acdf_brdf_sample(const AcdfBrdf* brdf, const float wo[3], double u0, double u1) {
 #ifdef ACDF_BRDF_GUESSES
     AcdfDirectionSample out;
@@ -294,7 +294,7 @@ ACDF_FN void acdf_brdf_refine(const AcdfBrdf* brdf, const AcdfBrdfView* view, co
 ACDF_FN int acdf_brdf_stays(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfRange range[2],
                             const double position[2], double sign, double margin[2], double t[2]) {
     const double nothing[2] = {0.0, 0.0};
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     double at[2], side;
     float wi[3];
     int axis;
@@ -305,7 +305,8 @@ ACDF_FN int acdf_brdf_stays(const AcdfBrdf* brdf, const AcdfBrdfView* view, cons
         at[axis] = (double)range[axis].low + t[axis] * wide;
     }
     acdf_brdf_reflect(brdf, view, at, sign, wi, margin);
-    return acdf_brdf_place(brdf, view, wi, &place, &side) && acdf_brdf_inside(range, place.position, nothing);
+    return acdf_brdf_half_position(brdf, view, wi, &place, &side) &&
+           acdf_brdf_inside(range, place.position, nothing);
 }
 
 /* The random numbers u[2] for which acdf_brdf_sample returns wi for wo, through the half-vector. Returns 1, or 0
@@ -313,18 +314,18 @@ ACDF_FN int acdf_brdf_stays(const AcdfBrdf* brdf, const AcdfBrdfView* view, cons
  * for rounding: a coordinate is off by 2^-23 at most, and for wi nearer to a border of the cell than samples come
  * by 2^-19 / |wo + wi| + 2^-29 / sin(theta_h), in cells that are wider. Samples that rounding would carry over a
  * border are moved into their cell, by an eighth of it or more: of those other numbers come back than they were
- * drawn by, which draw them as well. */
+ * sampled by, which sample them as well. */
 ACDF_FN int acdf_brdf_invert(const AcdfBrdf* brdf, const float wo[3], const float wi[3], double u[2]) {
     const double floor = (double)brdf->views->diffuse_share;
     AcdfBrdfView view;
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     AcdfRange range[2];
     AcdfStratum strata[2];
     double sign, margin[2] = {0.0, 0.0}, t[2];
     int axis;
     strata[0].low = strata[1].low = 0.0;
     strata[0].width = strata[1].width = 1.0;
-    if (!acdf_brdf_view(brdf, wo, &view) || !acdf_brdf_place(brdf, &view, wi, &place, &sign)) return 0;
+    if (!acdf_brdf_view(brdf, wo, &view) || !acdf_brdf_half_position(brdf, &view, wi, &place, &sign)) return 0;
     if (!(acdf_brdf_find(brdf, &view, &place, range, strata) > 0.0)) return 0;
     acdf_brdf_refine(brdf, &view, range, wi, place.position, &sign);
     if (!acdf_brdf_stays(brdf, &view, range, place.position, sign, margin, t))

@@ -15,7 +15,7 @@ enum { ACDF_ABOUT_MOST = 64 }; /* directions at once */
 /* Of each direction: what its half-vector is, and where it lies. */
 typedef struct AcdfBrdfAbout {
     float half[3][ACDF_ABOUT_MOST];
-    float length[ACDF_ABOUT_MOST], dot[ACDF_ABOUT_MOST]; /* of wo + wi, as AcdfBrdfPlace has them */
+    float length[ACDF_ABOUT_MOST], dot[ACDF_ABOUT_MOST]; /* of wo + wi, as AcdfBrdfPosition has them */
     int32_t step[2][ACDF_ABOUT_MOST];                    /* of the guides of borders */
     int32_t column[ACDF_ABOUT_MOST];                     /* of the grid of squares */
     float share[ACDF_ABOUT_MOST], area[ACDF_ABOUT_MOST]; /* of the cell */
@@ -25,7 +25,7 @@ typedef struct AcdfBrdfAbout {
 ACDF_INLINE void acdf_about_halves(const AcdfBrdfView* view, const float (*wi)[3], uint32_t count,
                                    AcdfBrdfAbout* a) {
     const float wo[3] = {(float)view->wo[0], (float)view->wo[1], (float)view->wo[2]};
-    const uint32_t all = (count + 3u) & ~3u; /* roots are drawn four at a time */
+    const uint32_t all = (count + 3u) & ~3u; /* roots are sampled four at a time */
     uint32_t i;
     int k;
     for (i = 0; i < count; ++i)
@@ -68,8 +68,8 @@ ACDF_INLINE float acdf_about_bounded(float position, float last) {
 
 /* Azimuths and heights, as acdf_brdf_position has them. The arc tangent is that of Abramowitz and Stegun, 4.4.47,
  * over pi: within 1e-5. */
-ACDF_INLINE void acdf_about_places(const AcdfBrdf* brdf, const AcdfBrdfView* view, uint32_t count,
-                                   AcdfBrdfAbout* a) {
+ACDF_INLINE void acdf_about_positions(const AcdfBrdf* brdf, const AcdfBrdfView* view, uint32_t count,
+                                      AcdfBrdfAbout* a) {
     const float turn0 = (float)view->turn[0], turn1 = (float)view->turn[1];
     const float columns = (float)brdf->columns, rows = (float)brdf->rows;
     const float last0 = acdf_about_last(brdf->columns), last1 = acdf_about_last(brdf->rows);
@@ -138,9 +138,9 @@ ACDF_OUTLINE_ON_CPU void acdf_brdf_view_pdfs_about(const AcdfBrdf* brdf, const A
     for (first = 0; first < count; first += ACDF_ABOUT_MOST) {
         const size_t left = count - first, some = left < ACDF_ABOUT_MOST ? left : (size_t)ACDF_ABOUT_MOST;
         acdf_about_halves(view, wi + first, (uint32_t)some, &a);
-        acdf_about_places(brdf, view, (uint32_t)some, &a);
+        acdf_about_positions(brdf, view, (uint32_t)some, &a);
         acdf_about_cells(brdf, view, (uint32_t)some, &a);
-        for (i = 0; i < some; ++i) { /* as acdf_brdf_mean_density */
+        for (i = 0; i < some; ++i) { /* as acdf_brdf_mean_pdf */
             const float pdf = scale * a.share[i] * a.length[i] / (a.dot[i] * a.area[i]);
             const float positive = pdf > 0.0f ? pdf : 0.0f; /* NaN is not */
             out[first + i] = positive < 1e30f ? positive : 1e30f;

@@ -9,13 +9,14 @@ extern "C" {
 #endif
 
 /* A direction as a place in the table. */
-typedef struct AcdfBrdfPlace {
+typedef struct AcdfBrdfPosition {
     double position[2];
     double dot, length; /* |wo . (wo + wi)| and |wo + wi|: the cosine |wo . wh| is dot / length */
-} AcdfBrdfPlace;
+} AcdfBrdfPosition;
 
 /* wo + wi and its length. Returns 0 where wi is not of unit length or opposite to wo. */
-ACDF_INLINE int acdf_brdf_half(const AcdfBrdfView* view, const float wi[3], double half[3], AcdfBrdfPlace* place) {
+ACDF_INLINE int acdf_brdf_half(const AcdfBrdfView* view, const float wi[3], double half[3],
+                               AcdfBrdfPosition* place) {
     const double x = wi[0], y = wi[1], z = wi[2], length2 = x * x + y * y + z * z;
     half[0] = view->wo[0] + x;
     half[1] = view->wo[1] + y;
@@ -51,8 +52,8 @@ ACDF_INLINE void acdf_brdf_position(const AcdfBrdf* brdf, const AcdfBrdfView* vi
 
 /* Place of the half-vector of wo and wi; `sign` is on which side of the mirror it lies. Returns 0 where wi is not
  * of unit length or opposite to wo. */
-ACDF_INLINE int acdf_brdf_place(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3],
-                                AcdfBrdfPlace* place, double* sign) {
+ACDF_INLINE int acdf_brdf_half_position(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3],
+                                        AcdfBrdfPosition* place, double* sign) {
     double half[3];
     if (!acdf_brdf_half(view, wi, half, place)) return 0;
     acdf_brdf_position(brdf, view, half, place->length, place->position, sign);
@@ -115,7 +116,7 @@ ACDF_INLINE double acdf_brdf_mirror(double* u0) {
 }
 
 /* Density of wi where a cell of probability p covers `area` grid squares. */
-ACDF_INLINE double acdf_brdf_mean_density(const AcdfBrdf* brdf, double p, double area, const AcdfBrdfPlace* place) {
+ACDF_INLINE double acdf_brdf_mean_pdf(const AcdfBrdf* brdf, double p, double area, const AcdfBrdfPosition* place) {
     return p * (double)brdf->columns * (double)brdf->rows * place->length / (8.0 * ACDF_PI * place->dot * area);
 }
 ACDF_INLINE float acdf_brdf_positive(double pdf) {

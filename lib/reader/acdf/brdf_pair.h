@@ -1,11 +1,11 @@
-/* Draws and densities of a BRDF file by its runtime tables (acdf/brdf_tables.h): those of the walk, bit for bit. */
+/* Samples and pdfs of a BRDF file by its runtime tables (acdf/brdf_tables.h): those of the walk, bit for bit. */
 #ifndef ACDF_BRDF_PAIR_H
 #define ACDF_BRDF_PAIR_H
 
 #include <acdf/brdf_half.h>
 
 #ifdef ACDF_SSE2
-#define ACDF_BRDF_GUESSES 1 /* draws take tables; without vectors of two the walk is as fast */
+#define ACDF_BRDF_GUESSES 1 /* samples take tables; without vectors of two the walk is as fast */
 #endif
 
 #ifdef __cplusplus
@@ -20,9 +20,9 @@ ACDF_INLINE double acdf_brdf_pair_share(const AcdfBrdf* brdf, const AcdfBrdfView
 
 /* Finds where wi lies, and its cell, of tables that have a grid. Returns 0 where none falls. */
 ACDF_INLINE int acdf_brdf_pair_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3],
-                                    AcdfBrdfPlace* place, uint32_t* cell) {
+                                    AcdfBrdfPosition* place, uint32_t* cell) {
     double position[2], sign;
-    if (!acdf_brdf_place(brdf, view, wi, place, &sign)) return 0;
+    if (!acdf_brdf_half_position(brdf, view, wi, place, &sign)) return 0;
     position[0] = acdf_brdf_bounded(place->position[0], brdf->columns);
     position[1] = acdf_brdf_bounded(place->position[1], brdf->rows);
     *cell = acdf_brdf_find_cell(brdf->tables, position);
@@ -31,16 +31,16 @@ ACDF_INLINE int acdf_brdf_pair_find(const AcdfBrdf* brdf, const AcdfBrdfView* vi
 
 /* The density there. */
 ACDF_INLINE float acdf_brdf_pair_found(const AcdfBrdf* brdf, const AcdfBrdfView* view, uint32_t cell,
-                                       const AcdfBrdfPlace* place) {
+                                       const AcdfBrdfPosition* place) {
     double p = acdf_brdf_pair_share(brdf, view, cell); /* NaN where no view weighs anything */
     if (!(p > 0.0)) return 0.0f;
-    p = acdf_brdf_mean_density(brdf, acdf_positive(p), acdf_brdf_area(brdf->tables, cell), place);
+    p = acdf_brdf_mean_pdf(brdf, acdf_positive(p), acdf_brdf_area(brdf->tables, cell), place);
     return acdf_brdf_positive(p);
 }
 
 /* acdf_brdf_view_pdf, of tables that have a grid. */
 ACDF_INLINE float acdf_brdf_pair_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3]) {
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     uint32_t cell;
     return acdf_brdf_pair_find(brdf, view, wi, &place, &cell) ? acdf_brdf_pair_found(brdf, view, cell, &place)
                                                               : 0.0f;
@@ -141,12 +141,12 @@ ACDF_OUTLINE uint32_t acdf_brdf_pair_walk(const AcdfBrdf* brdf, const uint8_t* r
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* Draws a cell of a mixture of the two rows around a view, as acdf_blend_sample does: the walk goes where a guess
+/* Samples a cell of a mixture of the two rows around a view, as acdf_blend_sample does: the walk goes where a guess
  * says, so that nothing waits for a comparison. Where one disagrees, the walk goes the other way, and then where
- * the cell across that side is. Returns the cell's probability; 0 where there is nothing to draw, and where all
+ * the cell across that side is. Returns the cell's probability; 0 where there is nothing to sample, and where all
  * that is left of the weight is below the random numbers. */
-ACDF_INLINE double acdf_brdf_pair_draw(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double u[2],
-                                       __m128d* left, const AcdfBrdfPath** drawn) {
+ACDF_INLINE double acdf_brdf_pair_sample_cell(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double u[2],
+                                              __m128d* left, const AcdfBrdfPath** sampled) {
     const AcdfBrdfTables* tables = brdf->tables;
     const double* codes = (const double*)acdf_brdf_words(tables, tables->codes);
     const AcdfBrdfPath* paths = (const AcdfBrdfPath*)acdf_brdf_words(tables, tables->paths);
@@ -160,7 +160,7 @@ ACDF_INLINE double acdf_brdf_pair_draw(const AcdfBrdf* brdf, const AcdfBrdfView*
     size_t i, depth = 0;
     AcdfPairWalk walk;
     __m128d share;
-    for (i = 0; i < 4; ++i) ACDF_PREFETCH(&paths[path->beyond[i]]); /* six of ten draws go there */
+    for (i = 0; i < 4; ++i) ACDF_PREFETCH(&paths[path->beyond[i]]); /* six of ten samples go there */
     parts[0] = parts[2] = codes;
     parts[1] = parts[3] = codes + 256;
     walk.weight = weight;
@@ -190,7 +190,7 @@ ACDF_INLINE double acdf_brdf_pair_draw(const AcdfBrdf* brdf, const AcdfBrdfView*
         path = &paths[acdf_brdf_pair_walk(brdf, row0, row1, splits[path->splits[depth - 1]].child[upper], &rest)];
         walk = rest;
     }
-    *drawn = path;
+    *sampled = path;
     if (!(_mm_cvtsd_f64(walk.chosen) > 0.0)) return 0.0;
     *left = _mm_div_pd(walk.x, walk.chosen);
     share = _mm_mul_pd(weight, walk.part);
@@ -202,19 +202,19 @@ ACDF_INLINE __m128d acdf_pair_doubles(const int32_t of[2]) {
     return _mm_cvtepi32_pd(_mm_loadl_epi64((const __m128i*)(const void*)of));
 }
 
-/* acdf_brdf_view_sample, of tables that have guesses. Returns 0 where there is nothing to draw, and where rounding
- * wi may carry it over the border of its cell: then the walk is to be asked. */
+/* acdf_brdf_view_sample, of tables that have guesses. Returns 0 where there is nothing to sample, and where
+ * rounding wi may carry it over the border of its cell: then the walk is to be asked. */
 ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0, double u1,
                                       AcdfDirectionSample* out) {
     const AcdfBrdfTables* tables = brdf->tables;
     const AcdfBrdfPath* path;
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     __m128d left, low, high, wide, position, reach, inside;
     double u[2], part[2], half[3], sign = 1.0, p, dot, radius;
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
     if (acdf_brdf_mirrored(brdf)) sign = acdf_brdf_mirror(&u[0]);
-    p = acdf_brdf_pair_draw(brdf, view, u, &left, &path);
+    p = acdf_brdf_pair_sample_cell(brdf, view, u, &left, &path);
     if (!(p > 0.0)) return 0;
     low = acdf_pair_doubles(path->low);
     high = acdf_pair_doubles(path->high);
@@ -230,17 +230,17 @@ ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* 
     if (_mm_movemask_pd(_mm_cmpgt_pd(inside, reach)) != 3) return 0;
     if (!acdf_brdf_half(view, out->direction, half, &place)) return 0;
     wide = _mm_mul_sd(wide, _mm_unpackhi_pd(wide, wide));
-    out->pdf = acdf_brdf_positive(acdf_brdf_mean_density(brdf, p, _mm_cvtsd_f64(wide), &place));
+    out->pdf = acdf_brdf_positive(acdf_brdf_mean_pdf(brdf, p, _mm_cvtsd_f64(wide), &place));
     return 1;
 }
 
-/* About what acdf_brdf_pair_sample draws, for a third of its time: the middle of the cell that is guessed, and the
- * density there. Returns 0 where there is none. */
+/* About what acdf_brdf_pair_sample samples, for a third of its time: the middle of the cell that is guessed, and
+ * the density there. Returns 0 where there is none. */
 ACDF_INLINE int acdf_brdf_pair_about(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0, double u1,
                                      AcdfDirectionSample* out) {
     const AcdfBrdfTables* tables = brdf->tables;
     const AcdfBrdfPath* path;
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     uint32_t cell;
     double u[2], part[2], half[3], sign = 1.0, radius, p;
     int axis;
@@ -254,7 +254,7 @@ ACDF_INLINE int acdf_brdf_pair_about(const AcdfBrdf* brdf, const AcdfBrdfView* v
     acdf_brdf_reflect_at(brdf, view, part[0], part[1], sign, out->direction, &radius);
     p = acdf_brdf_pair_share(brdf, view, cell);
     if (!(p > 0.0) || !acdf_brdf_half(view, out->direction, half, &place)) return 0;
-    out->pdf = acdf_brdf_positive(acdf_brdf_mean_density(brdf, p, acdf_brdf_area(tables, cell), &place));
+    out->pdf = acdf_brdf_positive(acdf_brdf_mean_pdf(brdf, p, acdf_brdf_area(tables, cell), &place));
     return 1;
 }
 

@@ -2,7 +2,7 @@
  * each view gives to each cell, and which cell random numbers are likely to lead to. Made once at load
  * (acdf/reader.h); flat words without pointers, which a GPU takes as they lie.
  *
- * Densities, and cells of draws, are those of the walk (acdf/blend.h) to the bit. */
+ * Densities, and cells of samples, are those of the walk (acdf/blend.h) to the bit. */
 #ifndef ACDF_BRDF_TABLES_H
 #define ACDF_BRDF_TABLES_H
 
@@ -50,8 +50,8 @@ typedef struct AcdfBrdfPath {
 } AcdfBrdfPath;
 ACDF_STATIC_ASSERT(sizeof(AcdfBrdfPath) == 64);
 
-/* A way to go at a split: bit i, whether draws go there of whose random numbers it is true (i & 1) that the one for
- * axis 0 lies below the border, and (i & 2) the one for axis 1. */
+/* A way to go at a split: bit i, whether samples go there of whose random numbers it is true (i & 1) that the one
+ * for axis 0 lies below the border, and (i & 2) the one for axis 1. */
 ACDF_INLINE uint32_t acdf_brdf_way(uint32_t axis, uint32_t upper) {
     return (axis ? 0xCu : 0xAu) ^ (upper ? 15u : 0u);
 }

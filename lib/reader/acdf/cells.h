@@ -21,14 +21,14 @@ ACDF_INLINE int acdf_is_direction(float sin2, float length2) {
 /* Where a direction lies: in place->slope not the tangent of the local azimuth but that itself. Returns 0 where
  * floats do not tell: within 2^-20 of a pole, and for directions whose length differs from 1 by more than 5e-5 or
  * that are not finite. */
-ACDF_INLINE int acdf_direction_place(uint32_t octahedral, const float direction[3], AcdfPlace* place) {
+ACDF_INLINE int acdf_keys_of_direction(uint32_t octahedral, const float direction[3], AcdfDirectionKeys* place) {
     const float x = direction[0], y = direction[1], z = direction[2];
     const float sin2 = x * x + y * y, length2 = sin2 + z * z;
     if (!acdf_is_direction(sin2, length2)) return 0;
     if (octahedral) {
-        *place = acdf_square_place(x, y, z, sin2, length2);
+        *place = acdf_square_keys(x, y, z, sin2, length2);
     } else {
-        *place = acdf_place_of(x, y, z, sin2, length2);
+        *place = acdf_direction_keys(x, y, z, sin2, length2);
         place->slope = acdf_atan_float(place->slope);
     }
     return 1;

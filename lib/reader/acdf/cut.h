@@ -15,18 +15,22 @@
 extern "C" {
 #endif
 
-enum { ACDF_CUT_MAX_PARTS = 96, ACDF_CUT_BLOCKS = ACDF_CUT_MAX_PARTS / ACDF_BLOCK_CELLS, ACDF_CUT_MAX_LIGHTS = 64 };
+enum {
+    ACDF_CUT_MAX_PARTS = 96,
+    ACDF_CUT_BLOCKS = ACDF_CUT_MAX_PARTS / ACDF_BLOCK_CELLS,
+    ACDF_CUT_MAX_BRIGHT_TILES = 64
+};
 
-/* A box: what lies below a split or in a tile. What draws and densities read stands first. */
+/* A box: what lies below a split or in a tile. What samples and densities read stands first. */
 typedef struct AcdfCutPart {
-    double numbers[2][2];               /* random numbers that draw it: from low to high of axis 0, of axis 1 */
+    double numbers[2][2];               /* random numbers that sample it: from low to high of axis 0, of axis 1 */
     double weight[ACDF_MAX_ROWS_MIXED]; /* what each row gives to it */
-    double lights;                      /* weights of the lights in it */
+    double bright_tiles;                /* weights of the bright tiles in it */
     double sum;                         /* of all weights */
     double probability;                 /* of the cut, for its maker to set */
     uint16_t node;                      /* the split, or the tile with its flag */
     uint16_t entry;                     /* the same in runtime tables */
-    uint16_t first_light, end_light;    /* which lights lie in it */
+    uint16_t first_light, end_light;    /* which bright tiles lie in it */
     uint32_t low[2], high[2];
     uint32_t tile;  /* the first tile in it; they are numbered in the order of the walk */
     uint16_t owner; /* 2 * split of the cut + side; of the whole: not used */
@@ -39,39 +43,41 @@ typedef struct AcdfCutSplit {
 } AcdfCutSplit;
 
 typedef struct AcdfCut {
-    int count;   /* of parts; 0: there is nothing to draw */
+    int count;   /* of parts; 0: there is nothing to sample */
     int nearest; /* which of the rows weighs most */
     AcdfCutPart part[ACDF_CUT_MAX_PARTS];
     AcdfCutSplit split[ACDF_CUT_MAX_PARTS - 1];
-    uint32_t boxes[ACDF_CUT_BLOCKS][16]; /* `numbers` of 16 parts each, as AcdfSquares has boxes */
-    double light[ACDF_CUT_MAX_LIGHTS];   /* weight of each */
+    uint32_t boxes[ACDF_CUT_BLOCKS][16];     /* `numbers` of 16 parts each, as AcdfSquares has boxes */
+    double light[ACDF_CUT_MAX_BRIGHT_TILES]; /* weight of each */
 } AcdfCut;
 
-ACDF_FN double acdf_cut_lights(const AcdfCut* cut, uint32_t first, uint32_t end) {
+ACDF_FN double acdf_cut_bright_tiles(const AcdfCut* cut, uint32_t first, uint32_t end) {
     double sum = 0.0;
     for (; first < end; ++first) sum += cut->light[first];
     return sum;
 }
 
-/* The whole as one part, of probability 1. For points that lights and shared tiles serve (ACDF_LOCAL_BLEND). */
+/* The whole as one part, of probability 1. For points that bright tiles and shared tiles serve (ACDF_LOCAL_BLEND).
+ */
 ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut) {
     AcdfCutPart* whole = &cut->part[0];
     uint32_t i;
     int k;
     cut->count = 1;
     if (acdf_local_tabled(local, point)) {
-        const AcdfLightPair* pair = acdf_local_lights(local->tables);
+        const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local->tables);
         const AcdfHorizon horizon = acdf_horizon(point);
-        for (i = 0; i < local->light_count; i += 2)
-            acdf_store_weights(acdf_light_pair_weights(pair++, &horizon), &cut->light[i]);
+        for (i = 0; i < local->bright_tile_count; i += 2)
+            acdf_store_weights(acdf_bright_tile_pair_weights(pair++, &horizon), &cut->light[i]);
     } else
-        for (i = 0; i < local->light_count; ++i) cut->light[i] = acdf_local_light_weight(local, point, i);
+        for (i = 0; i < local->bright_tile_count; ++i)
+            cut->light[i] = acdf_local_bright_tile_weight(local, point, i);
     whole->node = (uint16_t)acdf_blend_root(&local->blend);
     whole->entry = (uint16_t)(local->tables ? local->tables->tiles.root : 0);
     whole->depth = 0;
     whole->tile = 0;
     whole->first_light = 0;
-    whole->end_light = (uint16_t)local->light_count;
+    whole->end_light = (uint16_t)local->bright_tile_count;
     whole->owner = 0;
     whole->low[0] = whole->low[1] = 0;
     whole->high[0] = local->environment.columns;
@@ -80,8 +86,8 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
     cut->nearest = 0;
     for (k = 1; k < point->mix.count; ++k)
         if (point->mix.weight[k] > point->mix.weight[cut->nearest]) cut->nearest = k;
-    whole->lights = acdf_cut_lights(cut, 0, whole->end_light);
-    whole->sum = whole->lights + acdf_mixture_sum(&point->mix);
+    whole->bright_tiles = acdf_cut_bright_tiles(cut, 0, whole->end_light);
+    whole->sum = whole->bright_tiles + acdf_mixture_sum(&point->mix);
     whole->probability = 1.0;
 }
 
@@ -133,11 +139,11 @@ ACDF_FN double acdf_cut_share(const AcdfLocal* local, const AcdfLocalPoint* poin
     }
 }
 
-/* What a place sees of the halves, made to add up to what the part had. Returns the sum of the lower one. */
+/* What a position sees of the halves, made to add up to what the part had. Returns the sum of the lower one. */
 ACDF_FN double acdf_cut_see(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCutPart* part,
                             AcdfCutPart* upper, double low, double* high) {
-    const double odds = acdf_place_odds(&local->places, local->blend.tiles->codebook, &point->place,
-                                        point->place.count, part->node);
+    const double odds = acdf_visibility_odds(&local->visibility, local->blend.tiles->codebook, &point->visibility,
+                                             point->visibility.count, part->node);
     double scale;
     int i;
     if (!(odds >= 0.0)) return low;
@@ -150,19 +156,19 @@ ACDF_FN double acdf_cut_see(const AcdfLocal* local, const AcdfLocalPoint* point,
     return low * (scale * odds);
 }
 
-/* The lights of the halves of a part, whose numbers `upper` has, too. */
-ACDF_FN void acdf_cut_share_lights(const AcdfLocal* local, const AcdfCut* cut, AcdfCutPart* part,
-                                   AcdfCutPart* upper) {
+/* The bright tiles of the halves of a part, whose numbers `upper` has, too. */
+ACDF_FN void acdf_cut_share_bright_tiles(const AcdfLocal* local, const AcdfCut* cut, AcdfCutPart* part,
+                                         AcdfCutPart* upper) {
     const uint32_t end = part->end_light;
     uint32_t k, count = 0;
     double sum[2] = {0.0, 0.0};
     for (k = part->first_light; k < end; ++k) {
-        const uint32_t below = (uint32_t)(local->lights[k].tile < upper->tile);
+        const uint32_t below = (uint32_t)(local->bright_tiles[k].tile < upper->tile);
         sum[below ^ 1u] += cut->light[k];
         count += below;
     }
-    part->lights = sum[0];
-    upper->lights = sum[1];
+    part->bright_tiles = sum[0];
+    upper->bright_tiles = sum[1];
     upper->end_light = part->end_light;
     part->end_light = upper->first_light = (uint16_t)(part->first_light + count);
 }
@@ -186,10 +192,10 @@ ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* p
      * one. */
     upper->tile = child & ACDF_TILE_FLAG ? child & ~ACDF_TILE_FLAG : part->tile + child - part->node;
     low = acdf_cut_share(local, point, part, upper, &high);
-    if (point->place.count > 0 && low + high > 0.0) low = acdf_cut_see(local, point, part, upper, low, &high);
-    acdf_cut_share_lights(local, cut, part, upper);
-    part->sum = low + part->lights;
-    upper->sum = high + upper->lights;
+    if (point->visibility.count > 0 && low + high > 0.0) low = acdf_cut_see(local, point, part, upper, low, &high);
+    acdf_cut_share_bright_tiles(local, cut, part, upper);
+    part->sum = low + part->bright_tiles;
+    upper->sum = high + upper->bright_tiles;
     memcpy(upper->low, part->low, sizeof upper->low);
     memcpy(upper->high, part->high, sizeof upper->high);
     part->high[axis] = upper->low[axis] = position;
@@ -240,21 +246,21 @@ ACDF_FN void acdf_cut_middle(const AcdfLocal* local, const uint32_t box[2][2], f
     }
 }
 
-/* A direction from which a part is lit much: of its brightest light, where lights give it more than all else; else
- * the middle of the tile that is reached where the walk always takes the half to which the nearest bin gives more.
- * Returns the tile's number. */
+/* A direction from which a part is lit much: of its brightest light, where bright tiles give it more than all else;
+ * else the middle of the tile that is reached where the walk always takes the half to which the nearest bin gives
+ * more. Returns the tile's number. */
 ACDF_CALLED uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                     int number, float direction[3]) {
     const AcdfCutPart* part = &cut->part[number];
     const uint16_t* codebook = local->blend.tiles->codebook;
     uint32_t node = part->node, box[2][2], k;
     const uint8_t* row = point->mix.row[cut->nearest];
-    if (part->lights > 0.5 * part->sum) {
+    if (part->bright_tiles > 0.5 * part->sum) {
         uint32_t brightest = part->first_light;
         for (k = brightest + 1; k < part->end_light; ++k)
             if (cut->light[k] > cut->light[brightest]) brightest = k;
-        for (k = 0; k < 3; ++k) direction[k] = local->lights[brightest].direction[k];
-        return local->lights[brightest].tile;
+        for (k = 0; k < 3; ++k) direction[k] = local->bright_tiles[brightest].direction[k];
+        return local->bright_tiles[brightest].tile;
     }
     if (local->tables && local->tables->hearts && point->mix.count > 0) {
         const uint32_t tile = part->node & ACDF_TILE_FLAG
@@ -274,7 +280,8 @@ ACDF_CALLED uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint
         node = split->child[upper];
     }
     acdf_cut_middle(local, box, direction);
-    return node & ACDF_TILE_FLAG ? node & ~ACDF_TILE_FLAG : part->tile; /* where only lights shine, and not here */
+    return node & ACDF_TILE_FLAG ? node & ~ACDF_TILE_FLAG
+                                 : part->tile; /* where only bright tiles shine, and not here */
 }
 
 /* Solid angle of a part, sr. */

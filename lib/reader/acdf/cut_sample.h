@@ -1,4 +1,5 @@
-/* Drawing from a cut, and its density (acdf/cut.h). One freestanding header, valid C99, C++17 and CUDA/HIP/SYCL. */
+/* Sampling from a cut, and its density (acdf/cut.h). One freestanding header, valid C99, C++17 and CUDA/HIP/SYCL.
+ */
 #ifndef ACDF_CUT_SAMPLE_H
 #define ACDF_CUT_SAMPLE_H
 
@@ -14,7 +15,7 @@ ACDF_INLINE uint32_t acdf_cut_side(double number) {
     return (uint32_t)(scaled < 0xFF ? scaled : 0xFF) ^ 0x80u;
 }
 
-/* Tells each part which random numbers draw it: those of a split are shared by its children; share[~i] is that of
+/* Tells each part which random numbers sample it: those of a split are shared by its children; share[~i] is that of
  * part i, share[i] of split i. */
 ACDF_FN void acdf_cut_borders(AcdfCut* cut, const double* share) {
     /* Of splits and parts, as shares are: low and high on axis 0, on axis 1. Each in an array of its own: what is
@@ -61,8 +62,8 @@ ACDF_FN void acdf_cut_borders(AcdfCut* cut, const double* share) {
     }
 }
 
-/* Makes the cut ready to be drawn from: to be called when all parts have their probabilities, which need not add up
- * to 1. Parts without light get none. Where nothing is left the cut is emptied. */
+/* Makes the cut ready to be sampled from: to be called when all parts have their probabilities, which need not add
+ * up to 1. Parts without light get none. Where nothing is left the cut is emptied. */
 ACDF_FN void acdf_cut_finish(AcdfCut* cut) {
     /* Of parts and splits, so that a child's number finds its own without a branch that nobody guesses: part ~n
      * stands before split 0, which is in the middle. */
@@ -112,7 +113,7 @@ ACDF_INLINE double acdf_cut_of_all(const AcdfMixture* mix, const double* u, doub
     return whole;
 }
 
-/* Draws a tile of a part from its mixture; *inside becomes its share of that. */
+/* Samples a tile of a part from its mixture; *inside becomes its share of that. */
 ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part,
                                       const AcdfMixture* mix, double* u, AcdfRange* range, double* inside) {
     if (acdf_local_tabled(local, point)) {
@@ -120,14 +121,14 @@ ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoi
         const AcdfTileTables* tables = &local->tables->tiles;
         double from[2];
         const double whole = acdf_cut_of_all(mix, u, from);
-        const uint32_t tile = acdf_tile_draw(words, tables, mix, point->codes, part->entry, from, u, inside);
+        const uint32_t tile = acdf_tile_sample(words, tables, mix, point->codes, part->entry, from, u, inside);
         acdf_tile_range(acdf_tile_record(words, tables, tile), range);
         *inside = acdf_positive(*inside / whole);
         return tile;
     }
-    if (point->place.count > 0)
-        return acdf_place_sample_below(&local->places, &local->blend, mix, &point->place, part->node, u, range,
-                                       inside);
+    if (point->visibility.count > 0)
+        return acdf_visibility_sample_below(&local->visibility, &local->blend, mix, &point->visibility, part->node,
+                                            u, range, inside);
     return acdf_blend_sample_below(&local->blend, mix, part->node, u, range, inside);
 }
 
@@ -140,9 +141,9 @@ ACDF_FN uint32_t acdf_cut_find_tile(const AcdfLocal* local, const AcdfLocalPoint
         *inside = acdf_local_found_tile(local, point, mix, tile, part->depth, range);
         return tile;
     }
-    if (point->place.count > 0)
-        return acdf_place_find_below(&local->places, &local->blend, mix, &point->place, part->node, square, range,
-                                     inside);
+    if (point->visibility.count > 0)
+        return acdf_visibility_find_below(&local->visibility, &local->blend, mix, &point->visibility, part->node,
+                                          square, range, inside);
     return acdf_blend_find_below(&local->blend, mix, part->node, square, range, 0, inside);
 }
 
@@ -152,13 +153,13 @@ ACDF_INLINE double acdf_cut_number(double u) {
     return x < most ? x : most;
 }
 
-/* Whether numbers in [0, 1) draw a part. */
-ACDF_INLINE int acdf_cut_draws(const AcdfCutPart* part, const double u[2]) {
+/* Whether numbers in [0, 1) sample a part. */
+ACDF_INLINE int acdf_cut_samples(const AcdfCutPart* part, const double u[2]) {
     return (part->numbers[0][0] <= u[0]) & (u[0] < part->numbers[0][1]) & (part->numbers[1][0] <= u[1]) &
            (u[1] < part->numbers[1][1]);
 }
 
-/* The parts of a block that numbers in steps of 1/256 may draw. */
+/* The parts of a block that numbers in steps of 1/256 may sample. */
 ACDF_INLINE uint32_t acdf_cut_candidates(const AcdfCut* cut, int block, const uint32_t step[2]) {
 #ifdef ACDF_SSE2
     const __m128i* box = (const __m128i*)(const void*)cut->boxes[block];
@@ -169,7 +170,7 @@ ACDF_INLINE uint32_t acdf_cut_candidates(const AcdfCut* cut, int block, const ui
 #endif
 }
 
-/* The first part from a number on that numbers in [0, 1) may draw, the last part if there is no other. No branch
+/* The first part from a number on that numbers in [0, 1) may sample, the last part if there is no other. No branch
  * depends on which. */
 ACDF_INLINE int acdf_cut_guess(const AcdfCut* cut, const double u[2], int from) {
     const uint32_t step[2] = {(uint32_t)(int32_t)(u[0] * 256.0), (uint32_t)(int32_t)(u[1] * 256.0)};
@@ -190,12 +191,12 @@ ACDF_INLINE int acdf_cut_guess(const AcdfCut* cut, const double u[2], int from) 
     return cut->count - 1;
 }
 
-/* Draws a part by numbers in [0, 1), where all before number `guess` are known not to be drawn: u becomes what is
- * left of the random numbers. */
-ACDF_INLINE const AcdfCutPart* acdf_cut_draw_guessed(const AcdfCut* cut, int guess, double u[2]) {
+/* Samples a part by numbers in [0, 1), where all before number `guess` are known not to be sampled: u becomes what
+ * is left of the random numbers. */
+ACDF_INLINE const AcdfCutPart* acdf_cut_sample_guessed(const AcdfCut* cut, int guess, double u[2]) {
     const AcdfCutPart* part = &cut->part[guess];
     int i;
-    while (!acdf_cut_draws(part, u) && guess + 1 < cut->count)
+    while (!acdf_cut_samples(part, u) && guess + 1 < cut->count)
         part = &cut->part[guess = acdf_cut_guess(cut, u, guess + 1)];
     for (i = 0; i < 2; ++i) {
         const double width = part->numbers[i][1] - part->numbers[i][0], x = u[i] - part->numbers[i][0];
@@ -204,27 +205,27 @@ ACDF_INLINE const AcdfCutPart* acdf_cut_draw_guessed(const AcdfCut* cut, int gue
     return part;
 }
 
-/* Asks for what draws from a part read of it, and of rows where they begin in it. */
+/* Asks for what samples from a part read of it, and of rows where they begin in it. */
 ACDF_INLINE void acdf_cut_part_ahead(const AcdfCut* cut, int number) {
     ACDF_PREFETCH(&cut->part[number].numbers[0][0]);
     ACDF_PREFETCH(&cut->part[number].depth);
 }
 
-/* Draws a part. */
-ACDF_FN const AcdfCutPart* acdf_cut_draw(const AcdfCut* cut, double u[2]) {
+/* Samples a part. */
+ACDF_FN const AcdfCutPart* acdf_cut_choose_part(const AcdfCut* cut, double u[2]) {
     const int number = acdf_cut_guess(cut, u, 0);
     acdf_cut_part_ahead(cut, number);
-    return acdf_cut_draw_guessed(cut, number, u);
+    return acdf_cut_sample_guessed(cut, number, u);
 }
 
-/* Whether u0 in [0, 1] draws a light of a part, not from its mixture. */
-ACDF_INLINE int acdf_cut_draws_light(const AcdfCutPart* part, double u0) {
-    return (part->lights > 0.0) & ((u0 * part->sum < part->lights) | !(part->sum > part->lights));
+/* Whether u0 in [0, 1] samples a light of a part, not from its mixture. */
+ACDF_INLINE int acdf_cut_samples_bright_tile(const AcdfCutPart* part, double u0) {
+    return (part->bright_tiles > 0.0) & ((u0 * part->sum < part->bright_tiles) | !(part->sum > part->bright_tiles));
 }
 
-/* Draws that light; u[0] becomes what is left of it, *probability that of the light. Returns its tile. */
-ACDF_FN uint32_t acdf_cut_draw_light(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part, double* u,
-                                     AcdfRange* range, double* probability) {
+/* Samples that light; u[0] becomes what is left of it, *probability that of the light. Returns its tile. */
+ACDF_FN uint32_t acdf_cut_sample_bright_tile(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part,
+                                             double* u, AcdfRange* range, double* probability) {
     uint32_t k = part->first_light, chosen = part->end_light;
     double x = u[0] * part->sum, weight = 0.0;
     for (; k < part->end_light; ++k) {
@@ -236,16 +237,16 @@ ACDF_FN uint32_t acdf_cut_draw_light(const AcdfLocal* local, const AcdfCut* cut,
     }
     u[0] = acdf_unit_interval(x / weight);
     for (k = 0; k < 2; ++k) {
-        range[k].low = local->lights[chosen].low[k];
-        range[k].high = local->lights[chosen].high[k];
+        range[k].low = local->bright_tiles[chosen].low[k];
+        range[k].high = local->bright_tiles[chosen].high[k];
     }
     *probability = acdf_positive(part->probability * (weight / part->sum));
-    return local->lights[chosen].tile;
+    return local->bright_tiles[chosen].tile;
 }
 
-/* u0 as a number of the part's mixture alone, where it draws from that. */
+/* u0 as a number of the part's mixture alone, where it samples from that. */
 ACDF_INLINE double acdf_cut_number_of_mixture(const AcdfCutPart* part, double u0) {
-    return acdf_unit_interval((u0 * part->sum - part->lights) / (part->sum - part->lights));
+    return acdf_unit_interval((u0 * part->sum - part->bright_tiles) / (part->sum - part->bright_tiles));
 }
 
 /* The probability of a tile that is `inside` of the part's mixture. */
@@ -253,20 +254,20 @@ ACDF_INLINE double acdf_cut_tile_probability(const AcdfCutPart* part, const Acdf
     return acdf_positive(part->probability * (acdf_mixture_sum(mix) / part->sum * inside));
 }
 
-/* Draws a cell of a part; u and range as in acdf_tree_sample. Returns its probability, > 0. */
+/* Samples a cell of a part; u and range as in acdf_tree_sample. Returns its probability, > 0. */
 ACDF_FN double acdf_cut_sample_part(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                     const AcdfCutPart* part, double* u, AcdfRange* range) {
     double probability;
     uint32_t tile;
-    if (acdf_cut_draws_light(part, u[0])) {
-        tile = acdf_cut_draw_light(local, cut, part, u, range, &probability);
+    if (acdf_cut_samples_bright_tile(part, u[0])) {
+        tile = acdf_cut_sample_bright_tile(local, cut, part, u, range, &probability);
     } else {
         const AcdfMixture mix = acdf_cut_mixture(point, part);
         u[0] = acdf_cut_number_of_mixture(part, u[0]);
         tile = acdf_cut_sample_tile(local, point, part, &mix, u, range, &probability);
         probability = acdf_cut_tile_probability(part, &mix, probability);
     }
-    return acdf_local_draw_inside(local, tile, probability, u, range);
+    return acdf_local_sample_inside(local, tile, probability, u, range);
 }
 
 /* The probability of a tile that is `inside` of the part's mixture; 0 where no sample can fall. */
@@ -276,8 +277,9 @@ ACDF_FN double acdf_cut_found_probability(const AcdfLocal* local, const AcdfCut*
     if (!(part->probability > 0.0)) return 0.0;
     if (inside > 0.0) return acdf_cut_tile_probability(part, mix, inside);
     /* No row gives a light any probability. */
-    while (light < part->end_light && local->lights[light].tile < tile) ++light;
-    if (light == part->end_light || local->lights[light].tile != tile || !(cut->light[light] > 0.0)) return 0.0;
+    while (light < part->end_light && local->bright_tiles[light].tile < tile) ++light;
+    if (light == part->end_light || local->bright_tiles[light].tile != tile || !(cut->light[light] > 0.0))
+        return 0.0;
     return acdf_positive(part->probability * (cut->light[light] / part->sum));
 }
 
@@ -291,7 +293,7 @@ ACDF_FN const AcdfCutPart* acdf_cut_find(const AcdfCut* cut, const uint32_t* squ
     return &cut->part[~child];
 }
 
-/* Density per steradian with which acdf_cut_sample draws `direction` (unit); of cuts that are finished. */
+/* Density per steradian with which acdf_cut_sample samples `direction` (unit); of cuts that are finished. */
 ACDF_CALLED float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -312,17 +314,17 @@ ACDF_CALLED float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* poi
 }
 
 /* The direction that what is left of the random numbers picks in a cell of probability p. */
-ACDF_INLINE AcdfDirectionSample acdf_cut_place(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                               const AcdfCut* cut, const AcdfGrid* grid, const AcdfRange range[2],
-                                               const double u[2], double p) {
-    AcdfDirectionSample out = acdf_local_place(local, point, grid, range, u, p);
+ACDF_INLINE AcdfDirectionSample acdf_cut_direction_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                          const AcdfCut* cut, const AcdfGrid* grid,
+                                                          const AcdfRange range[2], const double u[2], double p) {
+    AcdfDirectionSample out = acdf_local_direction_sample(local, point, grid, range, u, p);
     /* A slope makes the density depend on where the rounded direction lies. */
     if (range[0].tilt != 0.0 || range[1].tilt != 0.0) out.pdf = acdf_cut_pdf(local, point, cut, out.direction);
     return out;
 }
 
-/* Draws a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
- * no direction) where the cut is empty. */
+/* Samples a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0
+ * (and no direction) where the cut is empty. */
 ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                 const AcdfCut* cut, double u0, double u1) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -333,10 +335,10 @@ ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const Ac
     if (cut->count == 0) return out;
     u[0] = acdf_cut_number(u0);
     u[1] = acdf_cut_number(u1);
-    part = acdf_cut_draw(cut, u);
+    part = acdf_cut_choose_part(cut, u);
     acdf_cut_range(part, range);
     p = acdf_cut_sample_part(local, point, cut, part, u, range);
-    return acdf_cut_place(local, point, cut, &grid, range, u, p);
+    return acdf_cut_direction_sample(local, point, cut, &grid, range, u, p);
 }
 
 #ifdef __cplusplus

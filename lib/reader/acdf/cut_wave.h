@@ -1,5 +1,5 @@
-/* Several draws from a cut side by side (acdf/cut_sample.h): what one of them waits for, memory and the splits and
- * curves on its way, the others use. Each is acdf_cut_sample's to the bit. One freestanding header, valid C99,
+/* Several samples from a cut side by side (acdf/cut_sample.h): what one of them waits for, memory and the splits
+ * and curves on its way, the others use. Each is acdf_cut_sample's to the bit. One freestanding header, valid C99,
  * C++17 and CUDA/HIP/SYCL; in kernels it makes single calls. */
 #ifndef ACDF_CUT_WAVE_H
 #define ACDF_CUT_WAVE_H
@@ -32,7 +32,7 @@ ACDF_INLINE int acdf_cut_by_vectors(const AcdfLocal* local, const AcdfLocalPoint
            local->blend.tiles->tile_count > 1;
 }
 
-/* A draw on its way. */
+/* A sample on its way. */
 typedef struct AcdfCutLane {
     double u[2];
     AcdfRange range[2];
@@ -49,7 +49,7 @@ typedef struct AcdfCutLanes {
     uint32_t lane[ACDF_CUT_WAVE];
 } AcdfCutLanes;
 
-/* Draws parts. */
+/* Samples parts. */
 ACDF_INLINE void acdf_cut_wave_parts(const AcdfCut* cut, const double (*u)[2], uint32_t count, AcdfCutLane* lane) {
     int guess[ACDF_CUT_WAVE];
     uint32_t i;
@@ -59,21 +59,22 @@ ACDF_INLINE void acdf_cut_wave_parts(const AcdfCut* cut, const double (*u)[2], u
         guess[i] = acdf_cut_guess(cut, lane[i].u, 0);
         acdf_cut_part_ahead(cut, guess[i]);
     }
-    for (i = 0; i < count; ++i) lane[i].part = acdf_cut_draw_guessed(cut, guess[i], lane[i].u);
+    for (i = 0; i < count; ++i) lane[i].part = acdf_cut_sample_guessed(cut, guess[i], lane[i].u);
 }
 
-/* Draws lights, and tells which lanes draw from the mixture of their part. */
+/* Samples bright tiles, and tells which lanes sample from the mixture of their part. */
 ACDF_INLINE void acdf_cut_wave_lights(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                       uint32_t count, AcdfCutLane* lane, AcdfCutLanes* mixed) {
     uint32_t i, k;
     mixed->count = 0;
     for (i = 0; i < count; ++i) {
         AcdfCutLane* one = &lane[i];
-        const int lit = acdf_cut_draws_light(one->part, one->u[0]);
+        const int lit = acdf_cut_samples_bright_tile(one->part, one->u[0]);
         acdf_cut_range(one->part, one->range);
         for (k = 0; k < ACDF_CUT_WAVE_ROWS; ++k)
             ACDF_PREFETCH(point->codes[k] + (one->part->entry & ~ACDF_TILE_FLAG));
-        if (lit) one->tile = acdf_cut_draw_light(local, cut, one->part, one->u, one->range, &one->probability);
+        if (lit)
+            one->tile = acdf_cut_sample_bright_tile(local, cut, one->part, one->u, one->range, &one->probability);
         mixed->lane[mixed->count] = i;
         mixed->count += (uint32_t)!lit;
     }
@@ -91,7 +92,7 @@ ACDF_INLINE AcdfMixture acdf_cut_wave_mixture(const AcdfCutPart* part) {
     return mix;
 }
 
-/* Draws tiles of mixtures. */
+/* Samples tiles of mixtures. */
 ACDF_INLINE void acdf_cut_wave_tiles(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutLanes* mixed,
                                      AcdfCutLane* lane) {
     const uint32_t* words = acdf_local_words(local->tables);
@@ -144,7 +145,7 @@ ACDF_INLINE void acdf_cut_wave_tiles(const AcdfLocal* local, const AcdfLocalPoin
     }
 }
 
-/* Follows curves of tiles: to the cells that hold squares, or where there are none, to those that the lanes draw.
+/* Follows curves of tiles: to the cells that hold squares, or where there are none, to those that the lanes sample.
  */
 ACDF_INLINE void acdf_cut_wave_curves(const AcdfLocal* local, uint32_t count, const uint32_t (*square)[2],
                                       AcdfCutLane* lane) {
@@ -170,7 +171,7 @@ ACDF_INLINE void acdf_cut_wave_curves(const AcdfLocal* local, uint32_t count, co
             AcdfCutLane* one = &lane[number];
             const uint32_t link =
                 square ? acdf_curve_locate(tree, units, one->curve, square[number], one->range, &inside[number])
-                       : acdf_curve_draw(tree, units, one->curve, one->u, one->range, &inside[number]);
+                       : acdf_short_curve_sample(tree, units, one->curve, one->u, one->range, &inside[number]);
             one->curve += link;
             ACDF_PREFETCH(tree + 2 * (size_t)one->curve);
             on_way.lane[on_way.count] = number;
@@ -214,7 +215,7 @@ ACDF_FN void acdf_cut_sample_wave(const AcdfLocal* local, const AcdfLocalPoint* 
         acdf_cut_wave_curves(local, some, 0, lane);
         for (i = 0; i < some; ++i)
             out[first + i] =
-                acdf_cut_place(local, point, cut, &grid, lane[i].range, lane[i].u, lane[i].probability);
+                acdf_cut_direction_sample(local, point, cut, &grid, lane[i].range, lane[i].u, lane[i].probability);
     }
 }
 

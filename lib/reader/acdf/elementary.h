@@ -1,7 +1,7 @@
 /* What the headers of the reader share: the qualifier of their functions, numbers that are neither NaN nor
  * infinite, and elementary functions.
  *
- * These are written out so that every machine draws the same directions and finds the same cells, which its libm
+ * These are written out so that every machine samples the same directions and finds the same cells, which its libm
  * would not grant, and because two atan2 calls would cost more than the rest. */
 #ifndef ACDF_ELEMENTARY_H
 #define ACDF_ELEMENTARY_H

@@ -1,10 +1,10 @@
 /* The fast shape of a local environment map (SPEC.md §5.11, §6.13): rows of cumulative sums over tiles, and a
- * regular grid of cells in each tile. What a draw and a density read lies where it is known beforehand, and is
+ * regular grid of cells in each tile. What a sample and a density read lies where it is known beforehand, and is
  * searched by vectors: no walk, no branch on the data. Part of acdf/local.h; freestanding, valid C99, C++17 and
  * CUDA/HIP/SYCL.
  *
- * All that decides which tile is drawn, and with which probability, are integers: so draws and densities agree to
- * the last bit, with vectors or without. */
+ * All that decides which tile is sampled, and with which probability, are integers: so samples and densities agree
+ * to the last bit, with vectors or without. */
 #ifndef ACDF_FAST_H
 #define ACDF_FAST_H
 
@@ -47,8 +47,8 @@ typedef struct AcdfFastMixture {
     double whole;                          /* their sum */
 } AcdfFastMixture;
 
-/* Row i of a mixture. What a draw looks at first is asked for, while something else is done; where nothing will be
- * drawn, it is left open. */
+/* Row i of a mixture. What a sample looks at first is asked for, while something else is done; where nothing will
+ * be sampled, it is left open. */
 ACDF_INLINE void acdf_fast_set_row(const AcdfFast* fast, AcdfFastMixture* mix, int i, uint32_t row,
                                    const int draws) {
     int k;
@@ -147,7 +147,7 @@ ACDF_INLINE void acdf_fast_narrow(AcdfRange* range, uint32_t i, uint32_t shift) 
 }
 
 /* One of a list of ends by a number; *steps becomes its probability times 255. */
-ACDF_INLINE uint32_t acdf_fast_draw_end(const uint8_t* ends, double* u, uint32_t* steps) {
+ACDF_INLINE uint32_t acdf_fast_sample_end(const uint8_t* ends, double* u, uint32_t* steps) {
     const double z = acdf_fast_scaled(*u, 255.0);
     const uint32_t i = acdf_fast_end_of(ends, z);
     uint32_t end;
@@ -157,12 +157,13 @@ ACDF_INLINE uint32_t acdf_fast_draw_end(const uint8_t* ends, double* u, uint32_t
     return i;
 }
 
-/* Draws a cell in a tile whose box is `range`, which becomes its own. Returns its probability there, of
+/* Samples a cell in a tile whose box is `range`, which becomes its own. Returns its probability there, of
  * ACDF_FAST_STEPS. */
-ACDF_INLINE double acdf_fast_draw_cell(const AcdfFastGrid* grid, double* u, AcdfRange* range) {
+ACDF_INLINE double acdf_fast_sample_cell(const AcdfFastGrid* grid, double* u, AcdfRange* range) {
     uint32_t of_line, in_line;
-    const uint32_t line = acdf_fast_draw_end(grid->ends, &u[1], &of_line);
-    const uint32_t cell = acdf_fast_draw_end(grid->ends + grid->count[1] + line * grid->count[0], &u[0], &in_line);
+    const uint32_t line = acdf_fast_sample_end(grid->ends, &u[1], &of_line);
+    const uint32_t cell =
+        acdf_fast_sample_end(grid->ends + grid->count[1] + line * grid->count[0], &u[0], &in_line);
     acdf_fast_narrow(&range[0], cell, grid->shift[0]);
     acdf_fast_narrow(&range[1], line, grid->shift[1]);
     return (double)(int32_t)(of_line * in_line);

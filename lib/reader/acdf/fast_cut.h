@@ -3,8 +3,8 @@
  * (acdf/product.h). One freestanding header over acdf/local.h, valid C99, C++17 and CUDA/HIP/SYCL.
  *
  * In groups that are not open, tiles get what the rows give to them, and in tiles cells what the file does: light
- * times cosine. Probabilities of lights, groups and tiles are integers, as those of rows are: draws and densities
- * agree to the last bit. */
+ * times cosine. Probabilities of bright tiles, groups and tiles are integers, as those of rows are: samples and
+ * densities agree to the last bit. */
 #ifndef ACDF_FAST_CUT_H
 #define ACDF_FAST_CUT_H
 
@@ -16,7 +16,7 @@ extern "C" {
 
 enum {
     ACDF_FAST_CUT_GROUPS = 448, /* at most: files with more are not cut */
-    ACDF_FAST_CUT_PARTS = ACDF_MAX_LIGHTS + 16 + ACDF_FAST_CUT_GROUPS,
+    ACDF_FAST_CUT_PARTS = ACDF_MAX_BRIGHT_TILES + 16 + ACDF_FAST_CUT_GROUPS,
     ACDF_FAST_CUT_UPPER = (ACDF_FAST_CUT_PARTS / 16 + 15) / 16 * 16,
     ACDF_FAST_CUT_OPEN = 16 /* groups whose tiles have probabilities of their own */
 };
@@ -26,8 +26,8 @@ enum {
 
 /* Lights, at least one part that is none up to a multiple of sixteen, and groups are parts. */
 typedef struct AcdfFastCut {
-    int32_t whole;                      /* the last end; 0: there is nothing to draw */
-    uint32_t lights;                    /* how many parts are lights: a multiple of 16 */
+    int32_t whole;                      /* the last end; 0: there is nothing to sample */
+    uint32_t bright_tiles;              /* how many parts are bright tiles: a multiple of 16 */
     uint32_t count;                     /* of parts; a multiple of 16 */
     int32_t upper[ACDF_FAST_CUT_UPPER]; /* every sixteenth end, and all ones behind them */
     int32_t end[ACDF_FAST_CUT_PARTS];   /* cumulative weights */
@@ -40,8 +40,10 @@ ACDF_INLINE int acdf_fast_cut_serves(const AcdfLocal* local) {
     return local->tables && local->tables->group_hearts;
 }
 
-/* How many parts stand before those of groups: lights, and at least one that is none. */
-ACDF_INLINE uint32_t acdf_fast_cut_lights(const AcdfLocal* local) { return (local->light_count + 16u) & ~15u; }
+/* How many parts stand before those of groups: bright tiles, and at least one that is none. */
+ACDF_INLINE uint32_t acdf_fast_cut_bright_tiles(const AcdfLocal* local) {
+    return (local->bright_tile_count + 16u) & ~15u;
+}
 
 /* ---- what a cut is made of -------------------------------------------------------------------------- */
 
@@ -129,7 +131,7 @@ ACDF_FN void acdf_fast_cut_finish(AcdfFastCut* cut, const float* share) {
     cut->whole = cut->end[cut->count - 1];
 }
 
-/* ---- draws and densities ---------------------------------------------------------------------------- */
+/* ---- samples and densities ---------------------------------------------------------------------------- */
 
 /* The first of sixteen ends that is above x, which is below the last one. */
 ACDF_INLINE uint32_t acdf_fast_cut_search(const int32_t* end, double x) {
@@ -160,9 +162,9 @@ ACDF_INLINE AcdfFastPart acdf_fast_cut_part(const int32_t* end, uint32_t i) {
     return out;
 }
 
-/* Draws a tile of a group; *share, which is the group's, becomes the tile's. */
-ACDF_INLINE uint32_t acdf_fast_cut_draw_tile(const AcdfLocalPoint* point, const AcdfFastCut* cut, uint32_t number,
-                                             double* u, AcdfFastShare* share) {
+/* Samples a tile of a group; *share, which is the group's, becomes the tile's. */
+ACDF_INLINE uint32_t acdf_fast_cut_sample_tile(const AcdfLocalPoint* point, const AcdfFastCut* cut, uint32_t number,
+                                               double* u, AcdfFastShare* share) {
     const uint32_t first = ACDF_FAST_GROUP * number, list = cut->open[number];
     AcdfFastTile tile;
     double whole, y;
@@ -207,7 +209,7 @@ ACDF_INLINE void acdf_fast_cut_find_tile(const AcdfLocalPoint* point, const Acdf
 /* The share of a tile, whose light has number `light` - 1; 0: it has none. */
 ACDF_INLINE AcdfFastShare acdf_fast_cut_find(const AcdfLocalPoint* point, const AcdfFastCut* cut, uint32_t tile,
                                              uint32_t light) {
-    const uint32_t part = light > 0 ? light - 1 : cut->lights + tile / ACDF_FAST_GROUP;
+    const uint32_t part = light > 0 ? light - 1 : cut->bright_tiles + tile / ACDF_FAST_GROUP;
     AcdfFastShare share;
     share.of = acdf_fast_cut_part(cut->end, part).mass;
     share.all = (double)cut->whole;
@@ -215,9 +217,10 @@ ACDF_INLINE AcdfFastShare acdf_fast_cut_find(const AcdfLocalPoint* point, const 
     return share;
 }
 
-/* Draws a tile by two numbers; `left` becomes what is left of them, *share that of acdf_fast_cut_find. */
-ACDF_INLINE uint32_t acdf_fast_cut_draw(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
-                                        const double u[2], double left[2], AcdfFastShare* share) {
+/* Samples a tile by two numbers; `left` becomes what is left of them, *share that of acdf_fast_cut_find. */
+ACDF_INLINE uint32_t acdf_fast_cut_choose_part(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                               const AcdfFastCut* cut, const double u[2], double left[2],
+                                               AcdfFastShare* share) {
     const double x = acdf_fast_scaled(acdf_unit_interval(u[0]), (double)cut->whole);
     AcdfFastPart part;
     uint32_t block = 0, number;
@@ -229,11 +232,11 @@ ACDF_INLINE uint32_t acdf_fast_cut_draw(const AcdfLocal* local, const AcdfLocalP
     left[1] = acdf_unit_interval(u[1]);
     share->of = part.mass;
     share->all = (double)cut->whole;
-    if (number < cut->lights) return local->lights[number].tile;
-    return acdf_fast_cut_draw_tile(point, cut, number - cut->lights, left, share);
+    if (number < cut->bright_tiles) return local->bright_tiles[number].tile;
+    return acdf_fast_cut_sample_tile(point, cut, number - cut->bright_tiles, left, share);
 }
 
-/* Density per steradian with which acdf_fast_cut_sample draws `direction` (unit). */
+/* Density per steradian with which acdf_fast_cut_sample samples `direction` (unit). */
 ACDF_CALLED float acdf_fast_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
                                     const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -243,15 +246,15 @@ ACDF_CALLED float acdf_fast_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint
     uint32_t square[2], tile;
     if (cut->whole == 0 || !acdf_local_square(&grid, direction, square)) return 0.0f;
     tile = acdf_local_fast_tile(local, square, range);
-    share = acdf_fast_cut_find(point, cut, tile, acdf_local_light_of(local, tile));
+    share = acdf_fast_cut_find(point, cut, tile, acdf_local_bright_tile_of(local, tile));
     cells = acdf_local_fast_record(local, tile, range);
     share.of *= acdf_fast_find_cell(&cells, square, range);
     share.all *= ACDF_FAST_STEPS;
-    return acdf_local_fast_density(local, &grid, range, &share);
+    return acdf_local_fast_cell_pdf(local, &grid, range, &share);
 }
 
-/* Draws a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
- * no direction) where the cut is empty. */
+/* Samples a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0
+ * (and no direction) where the cut is empty. */
 ACDF_CALLED AcdfDirectionSample acdf_fast_cut_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                      const AcdfFastCut* cut, double u0, double u1) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -265,11 +268,11 @@ ACDF_CALLED AcdfDirectionSample acdf_fast_cut_sample(const AcdfLocal* local, con
     u[0] = u0;
     u[1] = u1;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
-    tile = acdf_fast_cut_draw(local, point, cut, u, left, &share);
+    tile = acdf_fast_cut_choose_part(local, point, cut, u, left, &share);
     cells = acdf_local_fast_record(local, tile, range);
-    share.of *= acdf_fast_draw_cell(&cells, left, range);
+    share.of *= acdf_fast_sample_cell(&cells, left, range);
     share.all *= ACDF_FAST_STEPS;
-    return acdf_local_fast_place(local, &grid, range, left, &share);
+    return acdf_local_fast_direction_sample(local, &grid, range, left, &share);
 }
 
 #ifdef __cplusplus

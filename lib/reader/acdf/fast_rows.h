@@ -1,5 +1,6 @@
 /* Tiles of the fast shape by rows that a point mixes (acdf/fast.h): what each tile gets, and which one a number
- * draws. By vectors of SSE2, whose results do not pass through memory in pieces, and without: the same integers. */
+ * samples. By vectors of SSE2, whose results do not pass through memory in pieces, and without: the same integers.
+ */
 #ifndef ACDF_FAST_ROWS_H
 #define ACDF_FAST_ROWS_H
 
@@ -280,10 +281,10 @@ ACDF_INLINE AcdfFastShare acdf_fast_share(const AcdfFastMixture* mix, uint32_t t
     return out;
 }
 
-/* Draws a tile by x, below 32767 times the whole of the mixture, and u[1] in [0, 1]; u becomes what is left of the
- * random numbers. *share becomes that of acdf_fast_share. */
-ACDF_INLINE uint32_t acdf_fast_draw_tile(const AcdfFast* fast, const AcdfFastMixture* mix, double x, double* u,
-                                         AcdfFastShare* share) {
+/* Samples a tile by x, below 32767 times the whole of the mixture, and u[1] in [0, 1]; u becomes what is left of
+ * the random numbers. *share becomes that of acdf_fast_share. */
+ACDF_INLINE uint32_t acdf_fast_sample_tile(const AcdfFast* fast, const AcdfFastMixture* mix, double x, double* u,
+                                           AcdfFastShare* share) {
     const uint32_t number = acdf_fast_group_of(fast, mix, x);
     const AcdfFastGroup group = acdf_fast_find_group(mix, number);
     const double y = acdf_fast_scaled(u[1], 255.0 * group.whole);

@@ -1,5 +1,5 @@
 /* The grid of directions that the positions of a file lie on: lat-long (acdf/sphere.h) or the octahedral square
- * (acdf/octahedral.h). What is drawn, searched and weighed on both. */
+ * (acdf/octahedral.h). What is sampled, searched and weighed on both. */
 #ifndef ACDF_GRID_H
 #define ACDF_GRID_H
 
@@ -34,26 +34,26 @@ ACDF_FN double acdf_grid_solid_angle(const AcdfGrid* grid, const AcdfRange range
 /* Density per steradian in a cell of probability p, at fractions t[axis] of it in the measures of the axes. */
 ACDF_FN float acdf_grid_pdf(const AcdfGrid* grid, const AcdfRange range[2], const double t[2], double p) {
     return acdf_cell_pdf(p, range[0].high - range[0].low, grid->columns, acdf_grid_height(grid, &range[1]),
-                         acdf_tilt_density(range[0].tilt, t[0]) * acdf_tilt_density(range[1].tilt, t[1]));
+                         acdf_tilt_pdf(range[0].tilt, t[0]) * acdf_tilt_pdf(range[1].tilt, t[1]));
 }
 
 /* A place on one axis of the square, at fraction t of a range, ACDF_BORDER inside it. */
-ACDF_FN double acdf_octahedral_place_on(const AcdfRange* range, double t, uint32_t resolution) {
+ACDF_FN double acdf_octahedral_position_on(const AcdfRange* range, double t, uint32_t resolution) {
     const double border = (double)resolution * (0.5 * ACDF_BORDER), low = (double)range->low;
     const double at = low + t * (double)(range->high - range->low);
     return acdf_clamp(at, low + border, (double)range->high - border) / (double)resolution;
 }
 
 /* The direction that what is left of the random numbers picks in a cell of probability p. */
-ACDF_FN AcdfDirectionSample acdf_grid_place(const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
-                                            double p) {
+ACDF_FN AcdfDirectionSample acdf_grid_position(const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
+                                               double p) {
     AcdfDirectionSample out;
     double t[2], d[3];
     int i;
-    if (!acdf_grid_is_octahedral(grid)) return acdf_sphere_place(grid->columns, grid->rows, range, u, p);
+    if (!acdf_grid_is_octahedral(grid)) return acdf_sphere_position(grid->columns, grid->rows, range, u, p);
     for (i = 0; i < 2; ++i) t[i] = acdf_tilt_sample(range[i].tilt, u[i]);
-    acdf_octahedral_direction(acdf_octahedral_place_on(&range[0], t[0], grid->columns),
-                              acdf_octahedral_place_on(&range[1], t[1], grid->rows), d);
+    acdf_octahedral_direction(acdf_octahedral_position_on(&range[0], t[0], grid->columns),
+                              acdf_octahedral_position_on(&range[1], t[1], grid->rows), d);
     for (i = 0; i < 3; ++i) out.direction[i] = (float)d[i];
     out.pdf = acdf_grid_pdf(grid, range, t, p);
     return out;

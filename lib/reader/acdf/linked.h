@@ -1,4 +1,4 @@
-/* Draws and densities as symbols of the library, singly and in arrays: for what cannot compile the inline functions
+/* Samples and pdfs as symbols of the library, singly and in arrays: for what cannot compile the inline functions
  * of acdf/sample.h, local.h, brdf.h and table.h, such as Python, Rust, Julia or C#. All arguments are numbers and
  * pointers to them. Each gives what the inline function gives, bit for bit, where that is compiled with
  * -ffp-contract=off as the library is (else directions may differ in the last bit on processors that fuse products
@@ -25,47 +25,47 @@ typedef struct AcdfError AcdfError;
 
 /* ---- environments ---- */
 
-/* Draws a direction; returns its density, > 0. */
-float acdf_draw_environment(const AcdfFile* file, double u0, double u1, float direction[3]);
+/* Samples a direction; returns its density, > 0. */
+float acdf_sample_environment(const AcdfFile* file, double u0, double u1, float direction[3]);
 /* Density of a direction; 0 where none falls, for NaN and for directions that are not of unit length. */
-float acdf_density_environment(const AcdfFile* file, const float direction[3]);
+float acdf_pdf_environment(const AcdfFile* file, const float direction[3]);
 /* Arrays are served by the processor's vector instructions where it has them (acdf/wavefront.h). */
-int acdf_draw_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
-                                float* pdfs);
-int acdf_density_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs);
-/* The random numbers that draw each direction; NaN where the density is 0. */
+int acdf_sample_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
+                                  float* pdfs);
+int acdf_pdf_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs);
+/* The random numbers that sample each direction; NaN where the density is 0. */
 int acdf_invert_environment_array(const AcdfFile* file, const float* directions, size_t count, double* u);
 
 /* ---- local environments ---- */
 
 /* Density 0, and the direction unset, where the normal is zero or NaN or nothing shines on it. */
-float acdf_draw_local(const AcdfFile* file, const float normal[3], double u0, double u1, float direction[3]);
-float acdf_density_local(const AcdfFile* file, const float normal[3], const float direction[3]);
+float acdf_sample_local(const AcdfFile* file, const float normal[3], double u0, double u1, float direction[3]);
+float acdf_pdf_local(const AcdfFile* file, const float normal[3], const float direction[3]);
 /* Directions are 0 where their density is. Arrays are served as those of environments are, by waves of normals
- * where `each` is 1, and of draws at one shading point where it is more. */
-int acdf_draw_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
-                          float* directions, float* pdfs);
-int acdf_density_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
-                             size_t count, float* pdfs);
+ * where `each` is 1, and of samples at one shading point where it is more. */
+int acdf_sample_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
+                            float* directions, float* pdfs);
+int acdf_pdf_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
+                         size_t count, float* pdfs);
 /* Luminance times sr, of `count` normals: acdf_local_irradiance. */
 int acdf_irradiance_local_array(const AcdfFile* file, const float* normals, size_t count, double* irradiances);
 
 /* ---- BRDFs: wo and wi in the surface's frame, z its normal ---- */
 
 /* Density 0, and wi unset, where wo is not a unit vector above the surface. */
-float acdf_draw_brdf(const AcdfFile* file, const float wo[3], double u0, double u1, float wi[3]);
-float acdf_density_brdf(const AcdfFile* file, const float wo[3], const float wi[3]);
-int acdf_draw_brdf_array(const AcdfFile* file, const float* wo, size_t each, const double* u, size_t count,
-                         float* wi, float* pdfs);
-int acdf_density_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
-                            float* pdfs);
-/* The random numbers that draw each wi; NaN where the table's density is 0. */
+float acdf_sample_brdf(const AcdfFile* file, const float wo[3], double u0, double u1, float wi[3]);
+float acdf_pdf_brdf(const AcdfFile* file, const float wo[3], const float wi[3]);
+int acdf_sample_brdf_array(const AcdfFile* file, const float* wo, size_t each, const double* u, size_t count,
+                           float* wi, float* pdfs);
+int acdf_pdf_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
+                        float* pdfs);
+/* The random numbers that sample each wi; NaN where the table's density is 0. */
 int acdf_invert_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
                            double* u);
 /* In [0, 1], about, of `count` views: acdf_brdf_albedo. */
 int acdf_albedo_brdf_array(const AcdfFile* file, const float* wo, size_t count, double* albedos);
 
-/* The same draws and densities by the processor's vector instructions (acdf/wavefront.h), where it has them: a
+/* The same samples and densities by the processor's vector instructions (acdf/wavefront.h), where it has them: a
  * fraction of the time, bit for bit, by tables of some four times the file beside its own. Null where memory fails
  * or the file is of another kind. `error` may be null. Ends with acdf_brdf_waves_close, before its file does. */
 typedef struct AcdfBrdfWaves AcdfBrdfWaves;
@@ -84,14 +84,14 @@ uint32_t acdf_table_sampled_axes(const AcdfFile* file);
 uint32_t acdf_table_indexed_axes(const AcdfFile* file);
 /* Density per product of the units of the sampled axes; 0, and x unset, where the bin has no energy or an index is
  * out of range. */
-double acdf_draw_table(const AcdfFile* file, const uint32_t* index, const double* u, double* x);
-double acdf_density_table(const AcdfFile* file, const uint32_t* index, const double* x);
+double acdf_sample_table(const AcdfFile* file, const uint32_t* index, const double* u, double* x);
+double acdf_pdf_table(const AcdfFile* file, const uint32_t* index, const double* x);
 /* Points are NaN where their density is 0. */
-int acdf_draw_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* u, size_t count,
-                          double* x, double* pdfs);
-int acdf_density_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x,
-                             size_t count, double* pdfs);
-/* The random numbers that draw each point; NaN where the density is 0. */
+int acdf_sample_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* u, size_t count,
+                            double* x, double* pdfs);
+int acdf_pdf_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x, size_t count,
+                         double* pdfs);
+/* The random numbers that sample each point; NaN where the density is 0. */
 int acdf_invert_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x, size_t count,
                             double* u);
 

@@ -73,7 +73,7 @@ public:
                              ProductSample* out) const noexcept {
         acdf_brdf_view_samples(&data_, &point, u, count, out);
     }
-    /// About what `sample` draws, in less time, with the density there. Lobes need not have this.
+    /// About what `sample` samples, in less time, with the density there. Lobes need not have this.
     ACDF_METHOD ProductSample about(const Point& point, double u0, double u1) const noexcept {
         return acdf_brdf_view_about(&data_, &point, u0, u1);
     }
@@ -94,12 +94,12 @@ ACDF_METHOD ProductSample lobe_about(const AnyLobe& lobe, const typename AnyLobe
     return lobe.sample(point, u0, u1);
 }
 
-/// Sample i of `drawn`, at most 4, that look for a lobe: the points of Hammersley, moved off the borders.
+/// Sample i of `sampled`, at most 4, that look for a lobe: the points of Hammersley, moved off the borders.
 template <class AnyLobe>
 ACDF_METHOD ProductSample guide(const AnyLobe& lobe, const typename AnyLobe::Point& point, int i,
-                                int drawn) noexcept {
+                                int sampled) noexcept {
     const int reversed = (i & 1) << 2 | (i & 2) | i >> 2;
-    return lobe_about(lobe, point, (i + 0.5) / drawn, (reversed + 0.5) / 8.0, 0);
+    return lobe_about(lobe, point, (i + 0.5) / sampled, (reversed + 0.5) / 8.0, 0);
 }
 
 /// Densities of several directions: `pdfs` where it has that, else `pdf`.

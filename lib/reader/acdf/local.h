@@ -17,55 +17,55 @@ extern "C" {
 /* A tile of the mixture: by the walk of the normal alone or of normal and place. */
 ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                         AcdfRange* range, double* probability) {
-    if (point->place.count > 0)
-        return acdf_place_sample_below(&local->places, &local->blend, &point->mix, &point->place,
-                                       acdf_blend_root(&local->blend), u, range, probability);
+    if (point->visibility.count > 0)
+        return acdf_visibility_sample_below(&local->visibility, &local->blend, &point->mix, &point->visibility,
+                                            acdf_blend_root(&local->blend), u, range, probability);
     return acdf_blend_sample_tile(&local->blend, &point->mix, u, range, probability);
 }
 
-/* What random numbers of lights and mixture are of all that the mixture gives. */
+/* What random numbers of bright tiles and mixture are of all that the mixture gives. */
 ACDF_INLINE void acdf_local_of_mixture(const AcdfLocalPoint* point, const double* u, double from[2]) {
-    from[0] = u[0] * point->sum - point->lights;
+    from[0] = u[0] * point->sum - point->bright_tiles;
     from[1] = u[1] * acdf_mixture_sum(&point->mix);
 }
 
 /* The range of a tile to which the mixture gives `given` of all; returns that as its share. */
-ACDF_INLINE double acdf_local_drawn_tile(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile,
-                                         double given, AcdfRange* range) {
+ACDF_INLINE double acdf_local_sampled_tile(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile,
+                                           double given, AcdfRange* range) {
     acdf_tile_range(acdf_local_tile(local->tables, tile), range);
     return acdf_positive(given / acdf_mixture_sum(&point->mix));
 }
 
-/* acdf_local_sample_tile by tables; u[0] is that of lights and mixture. */
+/* acdf_local_sample_tile by tables; u[0] is that of bright tiles and mixture. */
 ACDF_INLINE uint32_t acdf_local_table_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                            AcdfRange* range, double* probability) {
     const AcdfTileTables* tables = &local->tables->tiles;
     double from[2], given;
     uint32_t tile;
     acdf_local_of_mixture(point, u, from);
-    tile = acdf_tile_draw(acdf_local_words(local->tables), tables, &point->mix, point->codes, tables->root, from, u,
-                          &given);
-    *probability = acdf_local_drawn_tile(local, point, tile, given, range);
+    tile = acdf_tile_sample(acdf_local_words(local->tables), tables, &point->mix, point->codes, tables->root, from,
+                            u, &given);
+    *probability = acdf_local_sampled_tile(local, point, tile, given, range);
     return tile;
 }
 
-/* Draws a cell of a tile of a probability; returns that of the cell. Roots alone are nearer than the tiles'
- * records, which not all draws have asked for. */
-ACDF_INLINE double acdf_local_draw_inside(const AcdfLocal* local, uint32_t tile, double probability, double* u,
-                                          AcdfRange* range) {
+/* Samples a cell of a tile of a probability; returns that of the cell. Roots alone are nearer than the tiles'
+ * records, which not all samples have asked for. */
+ACDF_INLINE double acdf_local_sample_inside(const AcdfLocal* local, uint32_t tile, double probability, double* u,
+                                            AcdfRange* range) {
     const uint32_t root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
     if (root == ACDF_NO_ROOT) return probability;
     return acdf_positive(probability *
-                         acdf_tree_draw(local->blend.tree, local->environment.tree_units, root, u, range));
+                         acdf_short_tree_sample(local->blend.tree, local->environment.tree_units, root, u, range));
 }
 
-/* Draws a cell of lights and mixture; u and range as in acdf_tree_sample. Returns its probability, > 0. */
+/* Samples a cell of bright tiles and mixture; u and range as in acdf_tree_sample. Returns its probability, > 0. */
 ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                        AcdfRange* range) {
     double probability;
     uint32_t tile;
-    const int tabled = acdf_local_tabled(local, point) && acdf_local_draws_mixture(point, u[0]);
-    const AcdfLight* light = tabled ? 0 : acdf_local_draw_light(local, point, u, &probability);
+    const int tabled = acdf_local_tabled(local, point) && acdf_local_samples_mixture(point, u[0]);
+    const AcdfBrightTile* light = tabled ? 0 : acdf_local_sample_bright_tile(local, point, u, &probability);
     if (light) {
         acdf_light_range(light, range);
         probability = acdf_positive(probability / point->sum);
@@ -75,16 +75,16 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
                       : acdf_local_sample_tile(local, point, u, range, &probability);
         probability = acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * probability);
     }
-    return acdf_local_draw_inside(local, tile, probability, u, range);
+    return acdf_local_sample_inside(local, tile, probability, u, range);
 }
 
 /* The direction that what is left of the random numbers picks in a cell of probability p. */
-ACDF_INLINE AcdfDirectionSample acdf_local_place(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                 const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
-                                                 double p) {
+ACDF_INLINE AcdfDirectionSample acdf_local_direction_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                            const AcdfGrid* grid, const AcdfRange range[2],
+                                                            const double u[2], double p) {
     AcdfDirectionSample out;
-    if (point->what != ACDF_LOCAL_BLEND || !acdf_local_place_by_tables(local, grid, range, u, out.direction))
-        return acdf_grid_place(grid, range, u, p);
+    if (point->what != ACDF_LOCAL_BLEND || !acdf_local_direction_by_tables(local, grid, range, u, out.direction))
+        return acdf_grid_position(grid, range, u, p);
     out.pdf = local->tables->octahedral ? acdf_fold_pdf(grid, range, p)
                                         : acdf_row_pdf(acdf_local_heights(local->tables), grid->columns, range, p);
     return out;
@@ -106,7 +106,7 @@ ACDF_FN void acdf_cosine_direction(const float normal[3], double u0, double u1, 
     for (i = 0; i < 3; ++i) direction[i] = (float)(r * (cosine * s[i] + sine * t[i]) + h * n[i]);
 }
 
-/* Draws by rows, or a tree; u[0] and u[1] in [0, 1]. */
+/* Samples by rows, or a tree; u[0] and u[1] in [0, 1]. */
 ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                       double* u) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -116,16 +116,17 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     p = point->what == ACDF_LOCAL_BLEND
             ? acdf_local_blend_sample(local, point, u, range)
-            : acdf_tree_draw(local->environment.tree, local->environment.tree_units, point->root, u, range);
-    return acdf_local_place(local, point, &grid, range, u, p);
+            : acdf_short_tree_sample(local->environment.tree, local->environment.tree_units, point->root, u, range);
+    return acdf_local_direction_sample(local, point, &grid, range, u, p);
 }
 
-/* Draws by the row of a place or through its windows, of which there are some. The density is that of the direction
- * as it was rounded. */
-ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_window_sample(const AcdfLocal* local,
+/* Samples by the row of a place or through its windows, of which there are some. The density is that of the
+ * direction as it was rounded. */
+ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_portal_sample(const AcdfLocal* local,
                                                                  const AcdfLocalPoint* point, double* u) {
     AcdfDirectionSample out;
-    if (acdf_windows_choose(&point->windows, u)) acdf_windows_sample(&point->windows, u, out.direction);
+    if (acdf_visible_portals_choose(&point->visible_portals, u))
+        acdf_visible_portals_sample(&point->visible_portals, u, out.direction);
     else out = acdf_local_row_sample(local, point, u);
     out.pdf = acdf_local_light_pdf(local, point, out.direction);
     return out;
@@ -145,13 +146,13 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_sample_at(const AcdfLocal
         out.pdf = acdf_local_light_pdf(local, point, out.direction);
     } else {
         if (local->cosine_share > 0.0) u[0] = (u[0] - local->cosine_share) / (1.0 - local->cosine_share);
-        out = point->windows.count > 0 ? acdf_local_window_sample(local, point, u)
-                                       : acdf_local_row_sample(local, point, u);
+        out = point->visible_portals.count > 0 ? acdf_local_portal_sample(local, point, u)
+                                               : acdf_local_row_sample(local, point, u);
     }
-    out.pdf = acdf_local_density(local, point, out.direction, out.pdf);
+    out.pdf = acdf_local_combined_pdf(local, point, out.direction, out.pdf);
     return acdf_returned(&out);
 }
-/* The latter; `weighed` as acdf_local_fast_draw has it. */
+/* The latter; `weighed` as acdf_local_fast_sample_cell has it. */
 ACDF_INLINE AcdfDirectionSample acdf_local_only_fast_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                             const int weighed, double u0, double u1) {
     AcdfDirectionSample out;
@@ -167,8 +168,8 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_fast_sample_at(const AcdfLoca
     return acdf_local_only_fast_sample(local, point, 1, u0, u1);
 }
 
-/* Draws a direction; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and no
- * direction) where the normal is not valid or nothing shines on it. */
+/* Samples a direction; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
+ * no direction) where the normal is not valid or nothing shines on it. */
 ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const AcdfLocalPoint* point, double u0,
                                                  double u1) {
     return acdf_local_only_fast(local, point) ? acdf_local_fast_sample_at(local, point, u0, u1)
@@ -206,9 +207,9 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
     AcdfNormalBins bins;
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
-    if (point.what >= ACDF_LOCAL_BLEND && acdf_company_records(local->company) &&
+    if (point.what >= ACDF_LOCAL_BLEND && acdf_partner_records(local->partner) &&
         acdf_local_bins(local, normal, &bins)) { /* shares tell what is left to the file */
-        const AcdfCompanyRecord* records = acdf_company_records(local->company);
+        const AcdfPartnerRecord* records = acdf_partner_records(local->partner);
         double sum = 0.0;
         int i;
         for (i = 0; i < bins.count; ++i) sum += bins.weight[i] * (double)records[bins.bin[i]].flux;
@@ -222,14 +223,14 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
                       0x1.fffffffffffffp1023); /* a file may have a total and a share whose product is too large */
 }
 
-/* Which share of the samples to draw from the file at a normal, in (0, 1]; interpolated between bins. */
+/* Which share of the samples to take from the file at a normal, in (0, 1]; interpolated between bins. */
 ACDF_FN float acdf_local_recommended_share(const AcdfLocal* local, const float normal[3]) {
     AcdfNormalBins bins;
     double sum = 0.0, weight = 0.0;
     int i;
-    if (!local->company || !acdf_local_bins(local, normal, &bins)) return acdf_company_share(local->company);
+    if (!local->partner || !acdf_local_bins(local, normal, &bins)) return acdf_partner_share(local->partner);
     for (i = 0; i < bins.count; ++i) {
-        sum += bins.weight[i] * (double)acdf_company_bin_share(local->company, bins.bin[i]);
+        sum += bins.weight[i] * (double)acdf_partner_bin_share(local->partner, bins.bin[i]);
         weight += bins.weight[i];
     }
     return (float)(sum / weight);

@@ -104,7 +104,7 @@ ACDF_INLINE void acdf_local_no_rows(const float normal[3], AcdfLocalPoint* out) 
     out->root = 0;
     out->facet = 0;
     acdf_as_given(normal, out->surface);
-    out->normal[0] = out->normal[1] = out->normal[2] = out->length = out->lights = out->sum = 0.0;
+    out->normal[0] = out->normal[1] = out->normal[2] = out->length = out->bright_tiles = out->sum = 0.0;
     out->mix.count = 0;
 }
 

@@ -1,8 +1,8 @@
-/* Draws and densities in local environment maps of the fast shape (acdf/fast.h). Part of acdf/local.h. */
+/* Samples and pdfs in local environment maps of the fast shape (acdf/fast.h). Part of acdf/local.h. */
 #ifndef ACDF_LOCAL_FAST_H
 #define ACDF_LOCAL_FAST_H
 
-#include <acdf/local_place.h>
+#include <acdf/local_position.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -22,8 +22,8 @@ ACDF_INLINE AcdfFastGrid acdf_local_fast_record(const AcdfLocal* local, uint32_t
     return out;
 }
 
-/* The grid of a tile that was drawn, and its box. */
-ACDF_INLINE AcdfFastGrid acdf_local_fast_drawn(const AcdfLocal* local, uint32_t tile, AcdfRange* range) {
+/* The grid of a tile that was sampled, and its box. */
+ACDF_INLINE AcdfFastGrid acdf_local_fast_sampled(const AcdfLocal* local, uint32_t tile, AcdfRange* range) {
     uint32_t node = acdf_blend_root(&local->blend), before = 0;
     if (local->tables) return acdf_local_fast_record(local, tile, range);
     /* Splits and tiles are numbered as the walk meets them; a part has a tile more than splits. */
@@ -52,7 +52,7 @@ ACDF_INLINE uint32_t acdf_local_fast_tile(const AcdfLocal* local, const uint32_t
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* How many sums up to lights are not above x. */
+/* How many sums up to bright tiles are not above x. */
 ACDF_INLINE uint32_t acdf_local_fast_passed(const AcdfLocalPoint* point, double x) {
     uint32_t i;
 #ifdef ACDF_SSE2
@@ -73,16 +73,16 @@ ACDF_INLINE uint32_t acdf_local_lit(const AcdfLocalPoint* point, uint32_t i) {
     return 2u * point->pair[i / 2] + i % 2;
 }
 
-/* A light that is drawn: its number, its weight, and the sum of those before it. */
-typedef struct AcdfDrawnLight {
+/* A light that is sampled: its number, its weight, and the sum of those before it. */
+typedef struct AcdfSampledBrightTile {
     uint32_t number;
     double weight, before;
-} AcdfDrawnLight;
+} AcdfSampledBrightTile;
 
-/* Of those that a point has weighed the one that x of their sum draws. */
-ACDF_INLINE AcdfDrawnLight acdf_local_fast_light(const AcdfLocalPoint* point, double x) {
+/* Of those that a point has weighed the one that x of their sum samples. */
+ACDF_INLINE AcdfSampledBrightTile acdf_local_fast_bright_tile(const AcdfLocalPoint* point, double x) {
     uint32_t i = acdf_local_fast_passed(point, x);
-    AcdfDrawnLight out;
+    AcdfSampledBrightTile out;
     while (i >= point->lit || !(point->light[i] > 0.0)) --i; /* x is the whole of them, or rounded to it */
     out.number = acdf_local_lit(point, i);
     out.weight = point->light[i];
@@ -91,13 +91,14 @@ ACDF_INLINE AcdfDrawnLight acdf_local_fast_light(const AcdfLocalPoint* point, do
 }
 
 /* The same where they are not weighed, but their facet is known: the first one that takes the sum of
- * acdf_local_tabled_lights above x. Weight 0 where x is the whole of them, or rounded to it: *whole becomes that.
+ * acdf_local_tabled_bright_tiles above x. Weight 0 where x is the whole of them, or rounded to it: *whole becomes
+ * that.
  */
-ACDF_INLINE AcdfDrawnLight acdf_local_facet_light(const AcdfLocal* local, const AcdfLocalPoint* point, double x,
-                                                  double* whole) {
-    const AcdfLightPair* pairs = acdf_local_lights(local->tables);
+ACDF_INLINE AcdfSampledBrightTile acdf_local_facet_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                               double x, double* whole) {
+    const AcdfBrightTilePair* pairs = acdf_local_bright_tiles(local->tables);
     uint32_t left = point->facet->seen;
-    AcdfDrawnLight out = {0, 0.0, 0.0};
+    AcdfSampledBrightTile out = {0, 0.0, 0.0};
 #ifdef ACDF_SSE2
     const AcdfHorizon horizon = acdf_horizon(point);
     const __m128d inverse = _mm_set1_pd(1.0 / point->length), zero = _mm_setzero_pd(), at = _mm_set1_pd(x);
@@ -140,48 +141,50 @@ ACDF_INLINE AcdfDrawnLight acdf_local_facet_light(const AcdfLocal* local, const 
     return out;
 }
 
-/* The light that x of the sum of weights draws at a point, of which none is known but a facet if `weighed` is 0;
+/* The light that x of the sum of weights samples at a point, of which none is known but a facet if `weighed` is 0;
  * what is left of x as a number in [0, 1]. */
-ACDF_INLINE AcdfDrawnLight acdf_local_draw_fast_light(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                      const int weighed, double x, double* u) {
-    AcdfDrawnLight out;
+ACDF_INLINE AcdfSampledBrightTile acdf_local_sample_fast_bright_tile(const AcdfLocal* local,
+                                                                     const AcdfLocalPoint* point, const int weighed,
+                                                                     double x, double* u) {
+    AcdfSampledBrightTile out;
     double whole = 0.0;
-    if (weighed) out = acdf_local_fast_light(point, x);
+    if (weighed) out = acdf_local_fast_bright_tile(point, x);
     else {
-        out = acdf_local_facet_light(local, point, x, &whole);
-        if (!(out.weight > 0.0)) out = acdf_local_facet_light(local, point, whole * (1.0 - 0x1p-53), &whole);
+        out = acdf_local_facet_bright_tile(local, point, x, &whole);
+        if (!(out.weight > 0.0)) out = acdf_local_facet_bright_tile(local, point, whole * (1.0 - 0x1p-53), &whole);
     }
     *u = acdf_unit_interval((x - out.before) / out.weight);
     return out;
 }
 
-/* Draws a cell; u and range as in acdf_tree_sample. Returns its probability. `weighed`: whether the point has the
+/* Samples a cell; u and range as in acdf_tree_sample. Returns its probability. `weighed`: whether the point has the
  * weight of each light, or a facet. */
-ACDF_INLINE AcdfFastShare acdf_local_fast_draw(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                               const int weighed, double* u, AcdfRange* range) {
+ACDF_INLINE AcdfFastShare acdf_local_fast_sample_cell(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                      const int weighed, double* u, AcdfRange* range) {
     const double x = u[0] * point->sum;
     AcdfFastShare share;
     AcdfFastGrid grid;
     uint32_t tile;
-    if (x < point->lights || point->mix.count == 0) {
-        const AcdfDrawnLight light = acdf_local_draw_fast_light(local, point, weighed, x, u);
-        tile = local->lights[light.number].tile;
+    if (x < point->bright_tiles || point->mix.count == 0) {
+        const AcdfSampledBrightTile light = acdf_local_sample_fast_bright_tile(local, point, weighed, x, u);
+        tile = local->bright_tiles[light.number].tile;
         share.of = light.weight;
         share.all = point->sum * ACDF_FAST_STEPS;
     } else {
         const double most = 32767.0 * point->fast.whole * (1.0 - 0x1p-53);
-        const double of_mixture = (x - point->lights) * point->step;
-        tile = acdf_fast_draw_tile(&local->fast, &point->fast, of_mixture < most ? of_mixture : most, u, &share);
+        const double of_mixture = (x - point->bright_tiles) * point->step;
+        tile = acdf_fast_sample_tile(&local->fast, &point->fast, of_mixture < most ? of_mixture : most, u, &share);
         share.of *= point->unit;
         share.all *= ACDF_FAST_STEPS;
     }
-    grid = acdf_local_fast_drawn(local, tile, range);
-    share.of *= acdf_fast_draw_cell(&grid, u, range);
+    grid = acdf_local_fast_sampled(local, tile, range);
+    share.of *= acdf_fast_sample_cell(&grid, u, range);
     return share;
 }
 
 /* The weight of the light that has a number and 1; of 0 of any. Without tables points have all. */
-ACDF_INLINE double acdf_local_fast_light_of(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t light) {
+ACDF_INLINE double acdf_local_fast_bright_tile_of(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                  uint32_t light) {
     const uint32_t k = light - (uint32_t)(light > 0);
     return local->tables ? acdf_tabled_weight(local, point, k) : point->light[k];
 }
@@ -192,11 +195,11 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_find(const AcdfLocal* local, const Acd
     const AcdfFastGrid grid = local->tables ? acdf_local_fast_record(local, tile, range)
                                             : acdf_fast_grid(&local->fast, local->blend.roots[tile], range);
     const double inside = acdf_fast_find_cell(&grid, square, range);
-    const uint32_t light = acdf_local_light_of(local, tile);
+    const uint32_t light = acdf_local_bright_tile_of(local, tile);
     AcdfFastShare share = acdf_fast_share(&point->fast, tile);
     share.of *= point->unit;
     if (light > 0) { /* no row gives it any */
-        share.of = acdf_local_fast_light_of(local, point, light);
+        share.of = acdf_local_fast_bright_tile_of(local, point, light);
         share.all = point->sum;
     }
     share.of *= inside;
@@ -219,19 +222,19 @@ ACDF_INLINE float acdf_local_fast_at_least(const AcdfLocal* local, const AcdfGri
 }
 /* Of any such cell: 0 where its probability is, which that of half of all directions is. Nobody guesses it, and to
  * know it all the rest is waited for: so no branch asks. */
-ACDF_INLINE float acdf_local_fast_density(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
-                                          const AcdfFastShare* share) {
+ACDF_INLINE float acdf_local_fast_cell_pdf(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
+                                           const AcdfFastShare* share) {
     const double huge = share->of * 0x1p1000;
     return acdf_local_fast_at_least(local, grid, range, share, huge < 1.17549435e-38 ? huge : 1.17549435e-38);
 }
 
 /* The direction that what is left of the random numbers picks in a cell of such a probability. */
-ACDF_INLINE AcdfDirectionSample acdf_local_fast_place(const AcdfLocal* local, const AcdfGrid* grid,
-                                                      const AcdfRange range[2], const double u[2],
-                                                      const AcdfFastShare* share) {
+ACDF_INLINE AcdfDirectionSample acdf_local_fast_direction_sample(const AcdfLocal* local, const AcdfGrid* grid,
+                                                                 const AcdfRange range[2], const double u[2],
+                                                                 const AcdfFastShare* share) {
     AcdfDirectionSample out;
-    if (!acdf_local_place_by_tables(local, grid, range, u, out.direction))
-        out = acdf_grid_place(grid, range, u, 1.0);
+    if (!acdf_local_direction_by_tables(local, grid, range, u, out.direction))
+        out = acdf_grid_position(grid, range, u, 1.0);
     out.pdf = acdf_local_fast_at_least(local, grid, range, share, 1.17549435e-38);
     return out;
 }
@@ -243,8 +246,8 @@ ACDF_INLINE AcdfDirectionSample acdf_local_fast_sample(const AcdfLocal* local, c
     AcdfRange range[2];
     AcdfFastShare share;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
-    share = acdf_local_fast_draw(local, point, weighed, u, range);
-    return acdf_local_fast_place(local, &grid, range, u, &share);
+    share = acdf_local_fast_sample_cell(local, point, weighed, u, range);
+    return acdf_local_fast_direction_sample(local, &grid, range, u, &share);
 }
 
 #ifdef __cplusplus

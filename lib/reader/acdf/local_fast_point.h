@@ -1,10 +1,11 @@
-/* Shading points of files of the fast shape (acdf/fast.h). Part of acdf/local.h. Where `draws` is 0 what only draws
- * need is left open: where rows are searched, and the weight of each light. Points without are of facets. */
+/* Shading points of files of the fast shape (acdf/fast.h). Part of acdf/local.h. Where `samples` is 0 what only
+ * samples need is left open: where rows are searched, and the weight of each light. Points without are of facets.
+ */
 #ifndef ACDF_LOCAL_FAST_POINT_H
 #define ACDF_LOCAL_FAST_POINT_H
 
+#include <acdf/bright_tiles.h>
 #include <acdf/local_corners.h>
-#include <acdf/local_lights.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -53,35 +54,35 @@ ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3],
     return 1;
 }
 
-/* Weighs the lights of the fast shape that the normal may see: each, the sums up to each, and all. Sums are made by
- * twos, so that few wait for each other. */
-ACDF_INLINE void acdf_local_fast_lights(const AcdfLocal* local, AcdfLocalPoint* out) {
+/* Weighs the bright tiles of the fast shape that the normal may see: each, the sums up to each, and all. Sums are
+ * made by twos, so that few wait for each other. */
+ACDF_INLINE void acdf_local_fast_bright_tiles(const AcdfLocal* local, AcdfLocalPoint* out) {
     const double inverse = 1.0 / out->length;
     double end = 0.0, sum[2] = {0.0, 0.0};
-    AcdfLightPair pair;
+    AcdfBrightTilePair pair;
     uint32_t k;
-    for (k = 0; k < local->light_count; k += 2) {
+    for (k = 0; k < local->bright_tile_count; k += 2) {
         uint32_t i;
-        acdf_local_light_pair(local, k, &pair);
+        acdf_local_bright_tile_pair(local, k, &pair);
         for (i = 0; i < 2; ++i) sum[i] += out->light[k + i] = acdf_pair_weight(out, &pair, i, inverse);
         out->light_end[k] = out->light[k] + end;
         end = out->light_end[k + 1] = (out->light[k + 1] + out->light[k]) + end;
         out->pair[k / 2] = (uint8_t)(k / 2);
     }
     out->lit = k;
-    out->lights = sum[0] + sum[1];
+    out->bright_tiles = sum[0] + sum[1];
 }
-/* The same by tables; where a facet is known, all as acdf_facet_lights tells it. */
-ACDF_INLINE void acdf_local_tabled_lights(const AcdfLocal* local, AcdfLocalPoint* out) {
+/* The same by tables; where a facet is known, all as acdf_facet_bright_tiles tells it. */
+ACDF_INLINE void acdf_local_tabled_bright_tiles(const AcdfLocal* local, AcdfLocalPoint* out) {
 #ifdef ACDF_SSE2
-    const AcdfLightPair* pair = acdf_local_lights(local->tables);
+    const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local->tables);
     const AcdfHorizon horizon = acdf_horizon(out);
     const __m128d inverse = _mm_set1_pd(1.0 / out->length), zero = _mm_setzero_pd();
     const AcdfFacet* facet = out->facet;
     const uint32_t others = facet ? facet->others : 0xFFFFFFFFu;
-    uint32_t left = facet                    ? facet->seen
-                    : local->light_count > 0 ? 0xFFFFFFFFu >> (31 - (local->light_count - 1) / 2)
-                                             : 0;
+    uint32_t left = facet                          ? facet->seen
+                    : local->bright_tile_count > 0 ? 0xFFFFFFFFu >> (31 - (local->bright_tile_count - 1) / 2)
+                                                   : 0;
     __m128d end = zero, sum = zero;
     out->lit = 0;
     for (; left; left &= left - 1) {
@@ -91,25 +92,26 @@ ACDF_INLINE void acdf_local_tabled_lights(const AcdfLocal* local, AcdfLocalPoint
         _mm_storeu_pd(&out->light[out->lit], both);
         sum = _mm_add_pd(sum, _mm_and_pd(both, _mm_castsi128_pd(is_other)));
         end = _mm_add_pd(_mm_add_pd(both, _mm_unpacklo_pd(zero, both)), end);
-        _mm_storeu_pd(&out->light_end[out->lit], end); /* at once, as draws read them */
+        _mm_storeu_pd(&out->light_end[out->lit], end); /* at once, as samples read them */
         end = _mm_unpackhi_pd(end, end);
         out->pair[out->lit / 2] = (uint8_t)k;
         out->lit += 2;
     }
-    out->lights = (facet ? acdf_facet_whole(out) : 0.0) + _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
+    out->bright_tiles =
+        (facet ? acdf_facet_whole(out) : 0.0) + _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
 #else
-    acdf_local_fast_lights(local, out);
-    if (out->facet) out->lights = acdf_facet_lights(local, out);
+    acdf_local_fast_bright_tiles(local, out);
+    if (out->facet) out->bright_tiles = acdf_facet_bright_tiles(local, out);
 #endif
 }
 
 /* acdf_local_sum of the fast shape. */
 ACDF_INLINE void acdf_local_fast_sum(const AcdfLocal* local, const int draws, AcdfLocalPoint* out) {
     const double mixture = out->mix.weight[0] + out->mix.weight[1] + out->mix.weight[2];
-    if (!local->tables) acdf_local_fast_lights(local, out);
-    else if (draws) acdf_local_tabled_lights(local, out);
-    else if (out->facet) out->lights = acdf_facet_lights(local, out);
-    out->sum = out->lights + mixture;
+    if (!local->tables) acdf_local_fast_bright_tiles(local, out);
+    else if (draws) acdf_local_tabled_bright_tiles(local, out);
+    else if (out->facet) out->bright_tiles = acdf_facet_bright_tiles(local, out);
+    out->sum = out->bright_tiles + mixture;
     if (!(out->sum > 0.0)) return;
     out->step = mixture > 0.0 ? 32767.0 * out->fast.whole / mixture : 0.0;
     out->unit = mixture > 0.0 ? mixture / (out->sum * (32767.0 * 255.0 * out->fast.whole)) : 0.0;

@@ -17,15 +17,15 @@ typedef struct AcdfLocal {
     AcdfBlend blend;             /* blend.tiles is null where each bin has a tree of its own */
     AcdfEnvironment environment; /* the 2D table that is always there */
     const AcdfBin* bins;
-    const AcdfLight* lights; /* of the blend */
-    uint32_t light_count;
+    const AcdfBrightTile* bright_tiles; /* of the blend */
+    uint32_t bright_tile_count;
     uint32_t subdivisions; /* of an octahedron's edge; 0: bins are cells of a lat-long grid */
     uint32_t columns;      /* of that grid */
     uint32_t rows;
     double cosine_share;
     const AcdfLocalTables* tables;          /* runtime tables; null: splits are walked */
-    const AcdfCompany* company;             /* null: to be used alone */
-    AcdfPlaceTable places;                  /* its header is null where places are not told apart */
+    const AcdfPartner* partner;             /* null: to be used alone */
+    AcdfVisibilityTable visibility;         /* its header is null where there are no visibility cells */
     AcdfPortalTable portals;                /* its header is null where there are none */
     const struct AcdfLocalVectors* vectors; /* acdf/cut_wave.h; null: several calls are made by scalar code */
     AcdfFast fast;                          /* the fast shape: the blend has no rows then, and roots are of grids */
@@ -42,9 +42,9 @@ ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfN
     return acdf_latlong_bins(local->columns, local->rows, normal, out);
 }
 
-/* What serves a normal: nothing, a tree of its own (or the environment's), or lights and what bins share, in either
- * shape. Made once for a shading point, it serves all samples there. It points into the memory of the AcdfLocal
- * that made it: not for one that was opened otherwise, or moved since. */
+/* What serves a normal: nothing, a tree of its own (or the environment's), or bright tiles and what bins share, in
+ * either shape. Made once for a shading point, it serves all samples there. It points into the memory of the
+ * AcdfLocal that made it: not for one that was opened otherwise, or moved since. */
 enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND, ACDF_LOCAL_FAST };
 
 typedef struct AcdfLocalPoint {
@@ -56,18 +56,18 @@ typedef struct AcdfLocalPoint {
     AcdfMixture mix;  /* of the blend; the weights are those that reach the place */
     const uint8_t* codes[ACDF_MAX_ROWS_MIXED]; /* the rows in the runtime tables, where there are such */
     const double* parts[ACDF_MAX_ROWS_MIXED];  /* what they give to each tile, where there are such */
-    const AcdfFacet* facet;            /* that of the normal in the runtime tables; null: they do not tell */
-    double lights;                     /* sum of the weights of the lights */
-    double sum;                        /* of all weights */
-    AcdfPlaceMixture place;            /* empty: the position is not known, or does not matter */
-    AcdfWindows windows;               /* as the place sees them; its count is 0 where there are none */
-    AcdfFastMixture fast;              /* of the fast shape; `mix` has the weights, too */
-    double step;                       /* of the fast shape: 32767 times the mixture's whole a weight */
-    double unit;                       /* of the fast shape: that of acdf_fast_share, of `sum` */
-    uint32_t lit;                      /* of the fast shape: how many lights the normal may see, by twos; */
-    uint8_t pair[ACDF_MAX_LIGHTS / 2]; /* the number of each two, */
-    double light[ACDF_MAX_LIGHTS];     /* their weights, */
-    double light_end[ACDF_MAX_LIGHTS]; /* and the sums of these from the first one to each */
+    const AcdfFacet* facet;             /* that of the normal in the runtime tables; null: they do not tell */
+    double bright_tiles;                /* sum of the weights of the bright tiles */
+    double sum;                         /* of all weights */
+    AcdfVisibilityMixture visibility;   /* empty: the position is not known, or does not matter */
+    AcdfVisiblePortals visible_portals; /* as the position sees them; its count is 0 where there are none */
+    AcdfFastMixture fast;               /* of the fast shape; `mix` has the weights, too */
+    double step;                        /* of the fast shape: 32767 times the mixture's whole a weight */
+    double unit;                        /* of the fast shape: that of acdf_fast_share, of `sum` */
+    uint32_t lit;                       /* of the fast shape: how many bright tiles the normal may see, by twos; */
+    uint8_t pair[ACDF_MAX_BRIGHT_TILES / 2]; /* the number of each two, */
+    double light[ACDF_MAX_BRIGHT_TILES];     /* their weights, */
+    double light_end[ACDF_MAX_BRIGHT_TILES]; /* and the sums of these from the first one to each */
 } AcdfLocalPoint;
 
 #ifdef __cplusplus

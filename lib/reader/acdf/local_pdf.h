@@ -11,7 +11,7 @@ extern "C" {
 
 /* Whether runtime tables know the tiles as a point sees them. */
 ACDF_INLINE int acdf_local_tabled(const AcdfLocal* local, const AcdfLocalPoint* point) {
-    return local->tables && point->place.count == 0;
+    return local->tables && point->visibility.count == 0;
 }
 
 /* Where the curves of a tile begin; ACDF_NO_ROOT: it is a cell. */
@@ -72,17 +72,17 @@ ACDF_INLINE AcdfLocalSpot acdf_local_spot(const AcdfLocal* local, const AcdfLoca
     return out;
 }
 
-/* The cell of a square in the mixture of lights and rows, which becomes `range`, as acdf_tree_find does. Returns
- * its probability, 0 where no sample can fall. */
+/* The cell of a square in the mixture of bright tiles and rows, which becomes `range`, as acdf_tree_find does.
+ * Returns its probability, 0 where no sample can fall. */
 ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfLocalSpot* spot,
                                      AcdfRange* range) {
     double probability;
     uint32_t tile = spot->tile;
     if (acdf_local_tabled(local, point))
         probability = acdf_local_found_tile(local, point, &point->mix, tile, 0, range);
-    else if (point->place.count > 0)
-        tile = acdf_place_find_below(&local->places, &local->blend, &point->mix, &point->place,
-                                     acdf_blend_root(&local->blend), spot->square, range, &probability);
+    else if (point->visibility.count > 0)
+        tile = acdf_visibility_find_below(&local->visibility, &local->blend, &point->mix, &point->visibility,
+                                          acdf_blend_root(&local->blend), spot->square, range, &probability);
     else tile = acdf_blend_find_tile(&local->blend, &point->mix, spot->square, range, 0, &probability);
     probability = acdf_local_tile_probability(local, point, tile, probability);
     return acdf_local_find_inside(local, tile, probability, spot->square, range);
@@ -116,7 +116,7 @@ ACDF_INLINE float acdf_local_cell_pdf(const AcdfLocal* local, const AcdfGrid* gr
     return acdf_grid_pdf(grid, range, t, p);
 }
 
-/* The density of what rows of codes, or a tree, draw. */
+/* The density of what rows of codes, or a tree, sample. */
 ACDF_FN float acdf_local_spot_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
                                   const AcdfLocalSpot* spot) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -149,10 +149,10 @@ ACDF_INLINE float acdf_local_fast_pdf(const AcdfLocal* local, const AcdfLocalPoi
     if (!acdf_local_square(&grid, direction, square)) return 0.0f;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     share = acdf_local_fast_find(local, point, acdf_local_fast_tile(local, square, range), square, range);
-    return acdf_local_fast_density(local, &grid, range, &share);
+    return acdf_local_fast_cell_pdf(local, &grid, range, &share);
 }
 
-/* The cell of a grid square that rows, or a tree, draw at a point, which becomes `range`, and its probability: 0
+/* The cell of a grid square that rows, or a tree, sample at a point, which becomes `range`, and its probability: 0
  * where no sample can fall. */
 ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t square[2],
                                     AcdfRange range[2]) {
@@ -184,15 +184,16 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
     return acdf_local_spot_pdf(local, point, direction, &spot);
 }
 
-/* The part of the density that follows the light: that of rows, and of windows where a place sees any. */
+/* The part of the density that follows the light: that of rows, and of windows where a position sees any. */
 ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     const float row = acdf_local_row_pdf(local, point, direction);
-    return point->windows.count > 0 ? acdf_windows_pdf(&point->windows, direction, row) : row;
+    return point->visible_portals.count > 0 ? acdf_visible_portals_pdf(&point->visible_portals, direction, row)
+                                            : row;
 }
 
 /* Both parts together: `light` is that of the light, the other one is that of the cosine to the normal. */
-ACDF_FN float acdf_local_density(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
-                                 float light) {
+ACDF_FN float acdf_local_combined_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
+                                      float light) {
     const double x = point->surface[0], y = point->surface[1], z = point->surface[2];
     const double share = local->cosine_share;
     double dx, dy, dz, size, cosine, pdf;
@@ -214,7 +215,7 @@ ACDF_FN float acdf_local_density(const AcdfLocal* local, const AcdfLocalPoint* p
 ACDF_OUTLINE_ON_CPU float acdf_local_any_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                 const float direction[3]) {
     if (point->what == ACDF_LOCAL_NOTHING) return 0.0f;
-    return acdf_local_density(local, point, direction, acdf_local_light_pdf(local, point, direction));
+    return acdf_local_combined_pdf(local, point, direction, acdf_local_light_pdf(local, point, direction));
 }
 ACDF_OUTLINE_ON_CPU float acdf_local_fast_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                  const float direction[3]) {
@@ -226,7 +227,7 @@ ACDF_INLINE int acdf_local_only_fast(const AcdfLocal* local, const AcdfLocalPoin
     return point->what == ACDF_LOCAL_FAST && local->cosine_share == 0.0;
 }
 
-/* Density per steradian with which acdf_local_sample_at draws `direction` (unit). */
+/* Density per steradian with which acdf_local_sample_at samples `direction` (unit). */
 ACDF_FN float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     return acdf_local_only_fast(local, point) ? acdf_local_fast_pdf_at(local, point, direction)
                                               : acdf_local_any_pdf_at(local, point, direction);
@@ -239,7 +240,7 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_pdf(const AcdfLocal* local, const float
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
     if (point.what == ACDF_LOCAL_NOTHING) return 0.0f;
-    return acdf_local_density(local, &point, direction, acdf_local_spot_pdf(local, &point, direction, &spot));
+    return acdf_local_combined_pdf(local, &point, direction, acdf_local_spot_pdf(local, &point, direction, &spot));
 }
 /* And of any file, by a point as others have it. */
 ACDF_OUTLINE_ON_CPU float acdf_local_any_new_pdf(const AcdfLocal* local, const float normal[3],
@@ -267,7 +268,7 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_fast_pdf(const AcdfLocal* local, const 
     acdf_local_fast_sum(local, 0, &point);
     if (point.what != ACDF_LOCAL_FAST) return 0.0f;
     share = acdf_local_fast_find(local, &point, tile, square, range);
-    return acdf_local_fast_density(local, &grid, range, &share);
+    return acdf_local_fast_cell_pdf(local, &grid, range, &share);
 }
 /* In any. */
 ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {

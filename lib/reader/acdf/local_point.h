@@ -38,10 +38,10 @@ ACDF_INLINE int acdf_local_table_rows(const AcdfLocal* local, const float normal
     return 1;
 }
 
-/* No place. Rows are left open. */
-ACDF_INLINE void acdf_local_nowhere(AcdfPlaceMixture* place) {
-    place->count = 0;
-    place->alike = 1;
+/* No mixture. Rows are left open. */
+ACDF_INLINE void acdf_local_nowhere(AcdfVisibilityMixture* mixture) {
+    mixture->count = 0;
+    mixture->alike = 1;
 }
 
 /* Begins a point: nothing serves it. */
@@ -56,8 +56,8 @@ ACDF_INLINE void acdf_local_nothing(const float normal[3], AcdfLocalPoint* out) 
     }
 }
 
-/* Finds what serves a normal, without the weights of lights and the place. Returns 0 where lights and mixture do
- * not. */
+/* Finds what serves a normal, without the weights of bright tiles and the mixture. Returns 0 where bright tiles and
+ * mixture do not. */
 ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     AcdfNormalBins bins;
     int i;
@@ -80,92 +80,94 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
     return 1;
 }
 
-/* Weighs lights and mixture together; `visible`: what of each light arrives, null: all. */
+/* Weighs bright tiles and mixture together; `visible`: what of each light arrives, null: all. */
 ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, AcdfLocalPoint* out) {
     uint32_t k;
-    if (out->facet && !visible) out->lights = acdf_facet_lights(local, out);
+    if (out->facet && !visible) out->bright_tiles = acdf_facet_bright_tiles(local, out);
     else
-        for (k = 0; k < local->light_count; ++k) {
-            const double weight = acdf_light_weight(&local->lights[k], out);
-            out->lights += visible ? weight * visible[k] : weight;
+        for (k = 0; k < local->bright_tile_count; ++k) {
+            const double weight = acdf_bright_tile_weight(&local->bright_tiles[k], out);
+            out->bright_tiles += visible ? weight * visible[k] : weight;
         }
-    out->sum = out->lights + acdf_mixture_sum(&out->mix);
+    out->sum = out->bright_tiles + acdf_mixture_sum(&out->mix);
     if (out->sum > 0.0) out->what = ACDF_LOCAL_BLEND;
 }
 
 /* Finds what serves a normal. */
 ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
-    out->windows.count = 0;
+    out->visible_portals.count = 0;
     if (local->fast.grid) {
-        out->place.count = 0;
+        out->visibility.count = 0;
         if (acdf_local_begin_fast(local, normal, out)) acdf_local_fast_sum(local, 1, out);
         return;
     }
-    acdf_local_nowhere(&out->place);
+    acdf_local_nowhere(&out->visibility);
     if (acdf_local_begin(local, normal, out)) acdf_local_sum(local, 0, out);
 }
 
 /* Finds what serves a normal at a position of the scene by rows alone, whatever comes through windows. */
 ACDF_FN void acdf_local_at_cells(const AcdfLocal* local, const float position[3], const float normal[3],
                                  AcdfLocalPoint* out) {
-    double visible, of_light[ACDF_MAX_LIGHTS];
+    double visible, of_light[ACDF_MAX_BRIGHT_TILES];
     int i;
-    acdf_local_nowhere(&out->place);
-    out->windows.count = 0;
+    acdf_local_nowhere(&out->visibility);
+    out->visible_portals.count = 0;
     acdf_as_given(normal, out->surface);
-    /* First of all: rows of places are far away, and come while the normal's are found. */
-    if (local->fast.grid) { /* which knows no places */
+    /* First of all: rows of visibility cells are far away, and come while the normal's are found. */
+    if (local->fast.grid) { /* which knows no visibility cells */
         acdf_local_at(local, normal, out);
         return;
     }
     if (local->blend.tiles)
-        acdf_place_at(&local->places, local->blend.tiles->tile_count, position, out->surface, &out->place);
+        acdf_visibility_at(&local->visibility, local->blend.tiles->tile_count, position, out->surface,
+                           &out->visibility);
     if (!acdf_local_begin(local, normal, out)) {
-        out->place.count = 0;
+        out->visibility.count = 0;
         return;
     }
-    if (out->place.count == 0) {
+    if (out->visibility.count == 0) {
         acdf_local_sum(local, 0, out);
         return;
     }
-    visible = acdf_place_visibility(&out->place, 0);
+    visible = acdf_mixture_visibility(&out->visibility, 0);
     for (i = 0; i < out->mix.count; ++i) out->mix.weight[i] *= visible;
-    acdf_place_see_lights(&out->place, local->light_count, of_light);
+    acdf_visibility_of_tiles(&out->visibility, local->bright_tile_count, of_light);
     acdf_local_sum(local, of_light, out);
-    if (!(out->sum > 0.0)) out->place.count = 0;
+    if (!(out->sum > 0.0)) out->visibility.count = 0;
 }
 
-/* Finds what serves a normal at a position of the scene. Outside of all cells, and where places are not told apart,
- * that is what serves the normal. */
-ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3], const float normal[3],
-                                 AcdfLocalPoint* out) {
+/* Finds what serves a normal at a position of the scene. Outside of all cells, and where there are no visibility
+ * cells, that is what serves the normal. */
+ACDF_FN void acdf_local_at_position(const AcdfLocal* local, const float position[3], const float normal[3],
+                                    AcdfLocalPoint* out) {
     acdf_local_at_cells(local, position, normal, out);
-    if (local->portals.header && out->place.count > 0)
-        acdf_windows_at(&local->portals, &local->places, &out->place, position, out->surface, &out->windows);
+    if (local->portals.header && out->visibility.count > 0)
+        acdf_visible_portals_at(&local->portals, &local->visibility, &out->visibility, position, out->surface,
+                                &out->visible_portals);
 }
 
-/* Whether u0 in [0, 1] draws from the mixture, not a light. */
-ACDF_FN int acdf_local_draws_mixture(const AcdfLocalPoint* point, double u0) {
-    return !(u0 * point->sum < point->lights || point->mix.count == 0);
+/* Whether u0 in [0, 1] samples from the mixture, not a light. */
+ACDF_FN int acdf_local_samples_mixture(const AcdfLocalPoint* point, double u0) {
+    return !(u0 * point->sum < point->bright_tiles || point->mix.count == 0);
 }
 
-/* The light that u[0] in [0, 1] draws, null where it draws from the mixture. *weight becomes its own. What is left
- * of u[0] takes its place. */
-ACDF_FN const AcdfLight* acdf_local_draw_light(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
-                                               double* weight) {
-    const AcdfLight* light = 0;
+/* The light that u[0] in [0, 1] samples, null where it samples from the mixture. *weight becomes its own. What is
+ * left of u[0] takes its mixture. */
+ACDF_FN const AcdfBrightTile* acdf_local_sample_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                            double* u, double* weight) {
+    const AcdfBrightTile* light = 0;
     double x = u[0] * point->sum;
     uint32_t k;
-    if (acdf_local_draws_mixture(point, u[0])) {
-        u[0] = acdf_unit_interval((x - point->lights) / (point->sum - point->lights));
+    if (acdf_local_samples_mixture(point, u[0])) {
+        u[0] = acdf_unit_interval((x - point->bright_tiles) / (point->sum - point->bright_tiles));
         return 0;
     }
     *weight = 0.0;
-    for (k = 0; k < local->light_count; ++k) {
-        const double w = acdf_local_light_weight(local, point, k);
+    for (k = 0; k < local->bright_tile_count; ++k) {
+        const double w = acdf_local_bright_tile_weight(local, point, k);
         if (!(w > 0.0)) continue;
         if (light) x -= *weight;
-        light = &local->lights[k];
+        light = &local->bright_tiles[k];
         *weight = w;
         if (x < w) break;
     }
@@ -173,7 +175,7 @@ ACDF_FN const AcdfLight* acdf_local_draw_light(const AcdfLocal* local, const Acd
     return light;
 }
 /* The box of a tile that has a light. */
-ACDF_INLINE void acdf_light_range(const AcdfLight* light, AcdfRange* range) {
+ACDF_INLINE void acdf_light_range(const AcdfBrightTile* light, AcdfRange* range) {
     int axis;
     for (axis = 0; axis < 2; ++axis) {
         range[axis].low = light->low[axis];
@@ -182,15 +184,15 @@ ACDF_INLINE void acdf_light_range(const AcdfLight* light, AcdfRange* range) {
 }
 
 /* The light of a tile: its number and 1; 0 where it has none. */
-ACDF_FN uint32_t acdf_local_light_of(const AcdfLocal* local, uint32_t tile) {
-    uint32_t low = 0, high = local->light_count;
+ACDF_FN uint32_t acdf_local_bright_tile_of(const AcdfLocal* local, uint32_t tile) {
+    uint32_t low = 0, high = local->bright_tile_count;
     if (local->tables) return acdf_local_tile(local->tables, tile)->light;
     while (low < high) {
         const uint32_t middle = (low + high) / 2;
-        if (local->lights[middle].tile < tile) low = middle + 1;
+        if (local->bright_tiles[middle].tile < tile) low = middle + 1;
         else high = middle;
     }
-    return low < local->light_count && local->lights[low].tile == tile ? low + 1 : 0;
+    return low < local->bright_tile_count && local->bright_tiles[low].tile == tile ? low + 1 : 0;
 }
 
 /* The probability of a tile to which the mixture gives that part of itself; 0 where no sample can fall. */
@@ -199,9 +201,9 @@ ACDF_FN double acdf_local_tile_probability(const AcdfLocal* local, const AcdfLoc
     uint32_t light;
     double probability;
     if (of_mixture > 0.0) return acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * of_mixture);
-    light = acdf_local_light_of(local, tile); /* no row gives a light any probability */
+    light = acdf_local_bright_tile_of(local, tile); /* no row gives a light any probability */
     if (light == 0) return 0.0;
-    probability = acdf_local_light_weight(local, point, light - 1) / point->sum;
+    probability = acdf_local_bright_tile_weight(local, point, light - 1) / point->sum;
     return probability > 0.0 ? acdf_positive(probability) : 0.0;
 }
 

@@ -26,17 +26,18 @@ typedef struct AcdfTilePiece {
     double area;        /* 2 pi times the cell's columns times its acdf_grid_height */
 } AcdfTilePiece;
 
-/* Two lights, as acdf_light_weight needs them; of an odd number the last one has share 0. */
-typedef struct AcdfLightPair {
+/* Two bright tiles, as acdf_bright_tile_weight needs them; of an odd number the last one has share 0. */
+typedef struct AcdfBrightTilePair {
     double direction[3][2], radius[2], share[2];
     double quarter[2]; /* of the share to the radius */
-} AcdfLightPair;
+} AcdfBrightTilePair;
 
-/* A triangle of the octahedron of normals (acdf/normals.h): lights as its normals see them, and its corners in the
- * order of acdf_octahedral_bins. */
+/* A triangle of the octahedron of normals (acdf/normals.h): bright tiles as its normals see them, and its corners
+ * in the order of acdf_octahedral_bins. */
 typedef struct AcdfFacet {
-    double whole[3];  /* sum of share times direction of the lights that are above the horizons of all, by pairs */
-    uint32_t others;  /* bit k: of pair k of lights one is neither above the horizons of all nor below */
+    double whole[3];  /* sum of share times direction of the bright tiles that are above the horizons of all, by
+                         pairs */
+    uint32_t others;  /* bit k: of pair k of bright tiles one is neither above the horizons of all nor below */
     uint32_t seen;    /* bit k: of pair k some normal may see one */
     double length[3]; /* of corners from the middle, in steps of an edge */
     float share[3];   /* of their bins; 0 also where that is not stored */
@@ -48,13 +49,13 @@ typedef struct AcdfLocalTables {
     uint32_t words; /* of all */
     uint32_t count; /* of pieces */
     AcdfTileTables tiles;
-    AcdfSquares directions; /* keys: acdf_direction_place */
+    AcdfSquares directions; /* keys: acdf_keys_of_direction */
     uint32_t pieces;        /* AcdfTilePiece, `count` of them; 0: the file is too large for such */
     uint32_t parts;         /* f64 a tile of each row: what part of the row it has; 0: as pieces */
     uint32_t heights;       /* f64, one more than there are rows: z between them; 0: not on a lat-long grid */
     uint32_t facets;       /* AcdfFacet, n^2 of each octant, of acdf_local_facet; 0: the octahedron is too large, or
                               there is none */
-    uint32_t lights;       /* AcdfLightPair, one two lights */
+    uint32_t bright_tiles; /* AcdfBrightTilePair, one two bright tiles */
     uint32_t middles;      /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and of the fast shape its
                               solid angle, else 0 */
     uint32_t hearts;       /* u16 a split of each row, numbered and counted as in `tiles`: the tile that is reached
@@ -81,8 +82,8 @@ ACDF_INLINE const double* acdf_local_heights(const AcdfLocalTables* tables) {
 ACDF_INLINE const AcdfFacet* acdf_local_facets(const AcdfLocalTables* tables) {
     return (const AcdfFacet*)(const void*)(acdf_local_words(tables) + tables->facets);
 }
-ACDF_INLINE const AcdfLightPair* acdf_local_lights(const AcdfLocalTables* tables) {
-    return (const AcdfLightPair*)(const void*)(acdf_local_words(tables) + tables->lights);
+ACDF_INLINE const AcdfBrightTilePair* acdf_local_bright_tiles(const AcdfLocalTables* tables) {
+    return (const AcdfBrightTilePair*)(const void*)(acdf_local_words(tables) + tables->bright_tiles);
 }
 ACDF_INLINE const float* acdf_local_middle(const AcdfLocalTables* tables, uint32_t tile) {
     return (const float*)(const void*)(acdf_local_words(tables) + tables->middles) + 4 * (size_t)tile;
@@ -106,9 +107,9 @@ ACDF_INLINE const AcdfTileRecord* acdf_local_tile(const AcdfLocalTables* tables,
 ACDF_INLINE const AcdfTilePiece* acdf_local_find_piece(const AcdfLocalTables* tables, const float direction[3]) {
     const uint32_t* words = acdf_local_words(tables);
     const uint16_t* found;
-    AcdfPlace place;
+    AcdfDirectionKeys place;
     uint32_t mask;
-    if (!acdf_direction_place(tables->octahedral, direction, &place)) return 0;
+    if (!acdf_keys_of_direction(tables->octahedral, direction, &place)) return 0;
     mask = acdf_squares_find(words, &tables->directions, place.key0, place.key1, &found);
     for (; mask; mask &= mask - 1) {
         const AcdfTilePiece* piece =

@@ -44,7 +44,7 @@ static inline const void* acdf_moved(const void* pointer, const AcdfMove* moves,
 static inline void acdf_move_environment(AcdfEnvironment* environment, const AcdfMove* moves, int count) {
     ACDF_MOVE(uint8_t, environment->tree);
     ACDF_MOVE(AcdfHalvedTree, environment->halved);
-    ACDF_MOVE(AcdfCompany, environment->company);
+    ACDF_MOVE(AcdfPartner, environment->partner);
 }
 
 /* The same of what bins share: a part of the following. */
@@ -61,14 +61,14 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
     acdf_move_blend(&local->blend, moves, count);
     acdf_move_environment(&local->environment, moves, count);
     ACDF_MOVE(AcdfBin, local->bins);
-    ACDF_MOVE(AcdfLight, local->lights);
+    ACDF_MOVE(AcdfBrightTile, local->bright_tiles);
     ACDF_MOVE(AcdfLocalTables, local->tables);
-    ACDF_MOVE(AcdfCompany, local->company);
-    ACDF_MOVE(AcdfPlaces, local->places.header);
-    ACDF_MOVE(AcdfPlaceSplit, local->places.splits);
-    ACDF_MOVE(uint16_t, local->places.columns);
-    ACDF_MOVE(uint16_t, local->places.set_of_row);
-    ACDF_MOVE(uint8_t, local->places.rows);
+    ACDF_MOVE(AcdfPartner, local->partner);
+    ACDF_MOVE(AcdfVisibility, local->visibility.header);
+    ACDF_MOVE(AcdfVisibilitySplit, local->visibility.splits);
+    ACDF_MOVE(uint16_t, local->visibility.columns);
+    ACDF_MOVE(uint16_t, local->visibility.set_of_row);
+    ACDF_MOVE(uint8_t, local->visibility.rows);
     ACDF_MOVE(AcdfPortals, local->portals.header);
     ACDF_MOVE(AcdfPortal, local->portals.portals);
     ACDF_MOVE(AcdfPortalMap, local->portals.maps);
@@ -97,7 +97,7 @@ static inline void acdf_move_table(AcdfTable* table, const AcdfMove* moves, int 
     ACDF_MOVE(uint8_t, table->tree);
     ACDF_MOVE(AcdfBin, table->bins);
     ACDF_MOVE(AcdfAxis, table->axes);
-    ACDF_MOVE(AcdfCompany, table->company);
+    ACDF_MOVE(AcdfPartner, table->partner);
     ACDF_MOVE(AcdfEntries, table->entries);
 }
 #undef ACDF_MOVE

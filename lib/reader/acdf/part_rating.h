@@ -16,7 +16,7 @@ struct LobeGuides {
     static constexpr int most = 4;
     std::uint32_t square[2][most] = {};
     float value[most], pdf[most];
-    int drawn = 0, count = 0; ///< how many were asked for, and are above the horizon
+    int sampled = 0, count = 0; ///< how many were asked for, and are above the horizon
     float brightest = 0.0f;
     double weights = 0.0, squares = 0.0; ///< sums of their weights as samples of light times BRDF, and squared
 
@@ -38,12 +38,12 @@ struct LobeGuides {
     }
 
     /// Relative variance of one sample of the lobe's own sampler, as the guides tell, and what they have missed
-    /// where the parts expect a larger mean: small lights in a lobe make it large.
+    /// where the parts expect a larger mean: small bright tiles in a lobe make it large.
     ACDF_METHOD double variance(double expected) const noexcept {
         constexpr double of_missed = 2.0, unknown = 100.0;
         if (!(weights > 0.0)) return unknown;
-        const double mean = weights / drawn, missed = expected / mean - 1.0;
-        const double seen = squares / (drawn * mean * mean) - 1.0;
+        const double mean = weights / sampled, missed = expected / mean - 1.0;
+        const double seen = squares / (sampled * mean * mean) - 1.0;
         return seen + (missed > 0.0 ? of_missed * missed : 0.0);
     }
 };
@@ -62,7 +62,7 @@ struct PartRating {
     /// Mean and mass, from the heart, which stands for the whole part, and the guides in it: weighed as two
     /// samplers' samples are by the balance heuristic.
     ACDF_METHOD void rate(const LobeGuides& all) noexcept {
-        const float expected = solid_angle * static_cast<float>(all.drawn); // over the density: guides in it
+        const float expected = solid_angle * static_cast<float>(all.sampled); // over the density: guides in it
         const float own = 1.0f / (1.0f + expected * pdf);
         mean = own * value;
         mass = own * pdf;

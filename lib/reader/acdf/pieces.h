@@ -1,5 +1,5 @@
-/* Pieces of the sphere, in which directions are drawn and found in floats. One text for processors and for shaders
- * of every language (acdf/dialect.h).
+/* Pieces of the sphere, in which directions are sampled and found in floats. One text for processors and for
+ * shaders of every language (acdf/dialect.h).
  *
  * The sphere is cut into eight pieces along z = 0 and the meridians half-way between the x and the y axes. In each,
  * azimuth is measured from the x or y axis in its middle: sine and cosine need no reduction, and minor over major
@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-/* ---- drawing ---------------------------------------------------------------------------------------- */
+/* ---- sampling ---------------------------------------------------------------------------------------- */
 
 /* The word of a random number in [0, 1] (others are clamped, NaN counts as 0): its first 32 bits. */
 ACDF_FN1(ACDF_U32, acdf_number, ACDF_F32, u) {
@@ -72,14 +72,14 @@ ACDF_FN1(ACDF_F32, acdf_atan_float, ACDF_F32, t) {
 }
 
 /* A direction as pieces see it. */
-ACDF_STRUCT_BEGIN(AcdfPlace)
+ACDF_STRUCT_BEGIN(AcdfDirectionKeys)
 ACDF_FIELD(ACDF_U32, key0)  /* quarter, then `slope` in steps of 2^-22 */
 ACDF_FIELD(ACDF_U32, key1)  /* `cap` in steps of 2^-24, in the south all bits turned */
 ACDF_FIELD(ACDF_F32, slope) /* minor over major coordinate, tangent of the local azimuth */
 ACDF_FIELD(ACDF_F32, cap)   /* 1 - |z| */
-ACDF_STRUCT_END(AcdfPlace)
+ACDF_STRUCT_END(AcdfDirectionKeys)
 
-/* A direction as places are found of it. */
+/* A direction as the lookups take it. */
 ACDF_STRUCT_BEGIN(AcdfUnit)
 ACDF_FIELD(ACDF_F32, x) /* of a pole, whose azimuth is all one, 1e-18 */
 ACDF_FIELD(ACDF_F32, y)
@@ -114,11 +114,12 @@ ACDF_FN3(ACDF_F32, acdf_cap_of, ACDF_F32, z, ACDF_F32, sin2, ACDF_F32, length2) 
 }
 
 /* Of a direction of nearly unit length that is not a pole; sin2 is x x + y y, length2 that and z z. */
-ACDF_FN5(AcdfPlace, acdf_place_of, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z, ACDF_F32, sin2, ACDF_F32, length2) {
+ACDF_FN5(AcdfDirectionKeys, acdf_direction_keys, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z, ACDF_F32, sin2, ACDF_F32,
+         length2) {
     ACDF_LET(ACDF_U32, steep) = ACDF_SELECT(ACDF_ABS(y) > ACDF_ABS(x), 1u, 0u);
     ACDF_LET(ACDF_F32, minor) = ACDF_SELECT(steep != 0u, -x, y);
     ACDF_LET(ACDF_F32, major) = ACDF_SELECT(steep != 0u, y, x);
-    ACDF_VAR(AcdfPlace, place);
+    ACDF_VAR(AcdfDirectionKeys, place);
     place.slope = ACDF_RATIO(minor, major);
     place.cap = acdf_cap_of(z, sin2, length2);
     place.key0 = ((steep | ((ACDF_BITS(major) >> 30u) & 2u)) << 23u) +

@@ -1,4 +1,4 @@
-// Drawing directions of light from the product of light, cosine and BRDF at a shading point, with their exact
+// Sampling directions of light from the product of light, cosine and BRDF at a shading point, with their exact
 // density. C++17, header only, freestanding over acdf/cut_sample.h and acdf/brdf.h: no allocation, no exceptions,
 // no errors. For kernels define ACDF_METHOD, for example as __host__ __device__.
 //
@@ -27,27 +27,27 @@ namespace acdf {
 /// How much work `at` does.
 struct ProductOptions {
     /// Into how many parts the sphere is divided, 1 to ACDF_CUT_MAX_PARTS: the BRDF is evaluated about once a part.
-    /// More pay where more samples are drawn. 1: light times cosine and the BRDF half and half.
+    /// More pay where more samples are taken. 1: light times cosine and the BRDF half and half.
     int parts = 64;
 };
 
-/// A shading point, ready to be drawn from. Plain data of bounded size.
+/// A shading point, ready to be sampled from. Plain data of bounded size.
 template <class LobePoint>
 struct ProductPoint {
     SurfaceFrame frame;
     AcdfLocalPoint light; ///< what serves the normal
     union {               // empty where the light's own density is used as it is, or not at all
         AcdfCut cut;
-        AcdfFastCut fast; ///< of lights of the fast shape
+        AcdfFastCut fast; ///< of bright tiles of the fast shape
     };
     LobePoint lobe;
-    double share; ///< of the samples that the BRDF's own sampler draws; below 0: nothing is drawn
+    double share; ///< of the samples that the BRDF's own sampler samples; below 0: nothing is sampled
 };
 
-/// Made of the light, of a local environment file or of an environment file, and a lobe. Draws from lights that
-/// shared tiles describe follow the product; all others mix those of the light's own density and of the BRDF's half
-/// and half. Holds views: valid while their files live. All functions are const, thread-safe, allocate and throw
-/// nothing.
+/// Made of the light, of a local environment file or of an environment file, and a lobe. Samples from bright tiles
+/// that shared tiles describe follow the product; all others mix those of the light's own density and of the BRDF's
+/// half and half. Holds views: valid while their files live. All functions are const, thread-safe, allocate and
+/// throw nothing.
 template <class AnyLobe>
 class ProductSampler {
 public:
@@ -67,23 +67,24 @@ public:
     ACDF_METHOD Point at(const SurfaceFrame& frame, const float wo[3]) const noexcept {
         return at(nullptr, frame, wo);
     }
-    /// The same where the light's file tells places apart: at a `position` of its scene; null: anywhere.
+    /// The same where the light's file stores visibility cells: at a `position` of its scene; null: anywhere.
     ACDF_METHOD Point at(const float position[3], const SurfaceFrame& frame, const float wo[3]) const noexcept;
     /// The same with a frame of its own around the unit `normal`: for BRDFs that are the same all around it.
     ACDF_METHOD Point at(const float normal[3], const float wo[3]) const noexcept {
         return at(surface_frame(normal), wo);
     }
 
-    /// Draws a direction; u0 and u1 in [0, 1]. pdf in sr^-1; 0 where nothing is drawn: it counts as 0, as do
+    /// Samples a direction; u0 and u1 in [0, 1]. pdf in sr^-1; 0 where nothing is sampled: it counts as 0, as do
     /// directions below the surface.
     ACDF_METHOD ProductSample sample(const Point& point, double u0, double u1) const noexcept;
-    /// The same of u[i] into out[i], i < count, to the bit: in less time where a point is drawn from several times.
+    /// The same of u[i] into out[i], i < count, to the bit: in less time where a point is sampled from several
+    /// times.
     ACDF_METHOD void sample(const Point& point, std::size_t count, const double (*u)[2],
                             ProductSample* out) const noexcept;
     /// Density in sr^-1 of a unit direction; exactly that of `sample` for what it returned. Positive wherever that
     /// of the lobe's own sampler is.
     ACDF_METHOD float pdf(const Point& point, const float direction[3]) const noexcept;
-    /// The same of directions[i] into out[i], i < count, to the bit: in less time, as for samples of lights.
+    /// The same of directions[i] into out[i], i < count, to the bit: in less time, as for samples of bright tiles.
     ACDF_METHOD void pdf(const Point& point, std::size_t count, const float (*directions)[3],
                          float* out) const noexcept;
 
@@ -94,18 +95,18 @@ private:
         point.frame.to_local(direction, wi);
         return lobe_.pdf(point.lobe, wi);
     }
-    /// Several of the light's part, where a cut is drawn from.
+    /// Several of the light's part, where a cut is sampled from.
     ACDF_METHOD void light_samples(const Point& point, std::size_t count, const double (*u)[2],
                                    ProductSample* out) const noexcept;
     ACDF_METHOD void light_pdfs(const Point& point, std::size_t count, const float (*directions)[3],
                                 float* out) const noexcept;
     ACDF_METHOD static float mixed(const Point& point, float light, float lobe) noexcept;
-    /// Whether a cut is drawn from, and the lobe.
-    ACDF_METHOD static bool draws_both(const Point& point) noexcept {
-        return (point.light.what == ACDF_LOCAL_BLEND || draws_groups(point)) && point.share >= 0.0 &&
+    /// Whether a cut is sampled from, and the lobe.
+    ACDF_METHOD static bool samples_both(const Point& point) noexcept {
+        return (point.light.what == ACDF_LOCAL_BLEND || samples_groups(point)) && point.share >= 0.0 &&
                point.share < 1.0;
     }
-    ACDF_METHOD static bool draws_groups(const Point& point) noexcept {
+    ACDF_METHOD static bool samples_groups(const Point& point) noexcept {
         return point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0;
     }
     ACDF_METHOD void sample_wave(const Point& point, std::size_t count, const double (*u)[2],
@@ -134,8 +135,8 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
     } else {
         point.light.what = ACDF_LOCAL_TREE;
         point.light.root = light_.environment.root;
-        point.light.place.count = 0;
-        point.light.windows.count = 0;
+        point.light.visibility.count = 0;
+        point.light.visible_portals.count = 0;
     }
     point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
     const PointOfLobe<AnyLobe> of_lobe = {light_, point.light, point.frame, lobe_, point.lobe, parts_};
@@ -153,7 +154,7 @@ template <class AnyLobe>
 ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const float direction[3]) const noexcept {
     if (!(point.share >= 0.0 && point.share < 1.0)) return 0.0f;
     if (point.light.what == ACDF_LOCAL_BLEND) return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
-    if (draws_groups(point)) return acdf_fast_cut_pdf(&light_, &point.light, &point.fast, direction);
+    if (samples_groups(point)) return acdf_fast_cut_pdf(&light_, &point.light, &point.fast, direction);
     return acdf_local_pdf_at(&light_, &point.light, direction);
 }
 
@@ -206,7 +207,7 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
     const double rest = (u - point.share) / (1.0 - point.share);
     if (point.light.what == ACDF_LOCAL_BLEND) {
         out = acdf_cut_sample(&light_, &point.light, &point.cut, rest, u1);
-    } else if (draws_groups(point)) {
+    } else if (samples_groups(point)) {
         out = acdf_fast_cut_sample(&light_, &point.light, &point.fast, rest, u1);
     } else {
         out = acdf_local_sample_at(&light_, &point.light, rest, u1);
@@ -216,13 +217,13 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
     return out;
 }
 
-/// Draws up to ACDF_CUT_WAVE of a point whose cut is drawn from, and its lobe.
+/// Samples up to ACDF_CUT_WAVE of a point whose cut is sampled from, and its lobe.
 template <class AnyLobe>
 ACDF_METHOD void ProductSampler<AnyLobe>::sample_wave(const Point& point, std::size_t count, const double (*u)[2],
                                                       ProductSample* out) const noexcept {
     std::size_t of_light[ACDF_CUT_WAVE], of_lobe[ACDF_CUT_WAVE], lit = 0;
     double rest[ACDF_CUT_WAVE][2];
-    ProductSample drawn[ACDF_CUT_WAVE];
+    ProductSample sampled[ACDF_CUT_WAVE];
     float directions[ACDF_CUT_WAVE][3], wi[ACDF_CUT_WAVE][3], light[ACDF_CUT_WAVE], lobe[ACDF_CUT_WAVE];
     for (std::size_t i = 0; i < count; ++i) {
         const double x = acdf_unit_interval(u[i][0]);
@@ -232,21 +233,21 @@ ACDF_METHOD void ProductSampler<AnyLobe>::sample_wave(const Point& point, std::s
         lit += static_cast<std::size_t>(!(x < point.share));
     }
     const std::size_t reflected = count - lit;
-    light_samples(point, lit, rest, drawn);
+    light_samples(point, lit, rest, sampled);
     for (std::size_t k = 0; k < lit; ++k) {
-        out[of_light[k]] = drawn[k];
-        light[of_light[k]] = drawn[k].pdf;
+        out[of_light[k]] = sampled[k];
+        light[of_light[k]] = sampled[k].pdf;
     }
     for (std::size_t k = 0; k < reflected; ++k) {
         rest[k][0] = acdf_unit_interval(u[of_lobe[k]][0]) / point.share;
         rest[k][1] = u[of_lobe[k]][1];
     }
-    lobe_samples(lobe_, point.lobe, rest, reflected, drawn, 0);
-    for (std::size_t k = 0; k < reflected; ++k) point.frame.to_world(drawn[k].direction, directions[k]);
+    lobe_samples(lobe_, point.lobe, rest, reflected, sampled, 0);
+    for (std::size_t k = 0; k < reflected; ++k) point.frame.to_world(sampled[k].direction, directions[k]);
     light_pdfs(point, reflected, directions, lobe);
     for (std::size_t k = 0; k < reflected; ++k) {
         const std::size_t i = of_lobe[k];
-        out[i] = {{directions[k][0], directions[k][1], directions[k][2]}, drawn[k].pdf};
+        out[i] = {{directions[k][0], directions[k][1], directions[k][2]}, sampled[k].pdf};
         light[i] = lobe[k];
     }
     for (std::size_t i = 0; i < count; ++i) point.frame.to_local(out[i].direction, wi[i]);
@@ -261,7 +262,7 @@ template <class AnyLobe>
 ACDF_METHOD void ProductSampler<AnyLobe>::sample(const Point& point, std::size_t count, const double (*u)[2],
                                                  ProductSample* out) const noexcept {
     constexpr std::size_t wave = ACDF_CUT_WAVE;
-    const bool both = draws_both(point);
+    const bool both = samples_both(point);
     for (std::size_t first = 0; both && first < count; first += wave)
         sample_wave(point, count - first < wave ? count - first : wave, u + first, out + first);
     for (std::size_t i = 0; !both && i < count; ++i) out[i] = sample(point, u[i][0], u[i][1]);
@@ -270,7 +271,7 @@ ACDF_METHOD void ProductSampler<AnyLobe>::sample(const Point& point, std::size_t
 template <class AnyLobe>
 ACDF_METHOD void ProductSampler<AnyLobe>::pdf(const Point& point, std::size_t count, const float (*directions)[3],
                                               float* out) const noexcept {
-    if (!draws_both(point)) {
+    if (!samples_both(point)) {
         for (std::size_t i = 0; i < count; ++i) out[i] = pdf(point, directions[i]);
         return;
     }

@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-/* A shading point, ready to be drawn from: plain bytes that may be copied. */
+/* A shading point, ready to be sampled from: plain bytes that may be copied. */
 typedef union AcdfProductPoint {
     unsigned char bytes[16384];
     double align;
@@ -27,11 +27,11 @@ typedef union AcdfProductPoint {
  * and normal, three unit vectors; wo: towards the viewer; both in the frame of directions. */
 void acdf_product_at(const AcdfLocal* light, const AcdfBrdf* brdf, int parts, const float frame[9],
                      const float wo[3], AcdfProductPoint* point);
-/* Draws a direction with the light and BRDF that the point was made with; u0 and u1 in [0, 1]. pdf in sr^-1; 0
- * where nothing is drawn: it counts as 0, as do directions below the surface. */
+/* Samples a direction with the light and BRDF that the point was made with; u0 and u1 in [0, 1]. pdf in sr^-1; 0
+ * where nothing is sampled: it counts as 0, as do directions below the surface. */
 AcdfDirectionSample acdf_product_sample(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point,
                                         double u0, double u1);
-/* The same of u[i] into out[i], i < count, to the bit: in less time where a point is drawn from several times. */
+/* The same of u[i] into out[i], i < count, to the bit: in less time where a point is sampled from several times. */
 void acdf_product_samples(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point, size_t count,
                           const double (*u)[2], AcdfDirectionSample* out);
 /* Density in sr^-1 of a unit direction; exactly that of the sample for what it returned. */

@@ -27,7 +27,7 @@ private:
         float mean, around;
     };
 
-    ACDF_METHOD void draw_guides() noexcept;
+    ACDF_METHOD void sample_guides() noexcept;
     ACDF_METHOD void look(int count, const int* parts) noexcept;
     ACDF_METHOD Division halve(int part) noexcept;
     ACDF_METHOD void divide() noexcept;
@@ -39,9 +39,9 @@ private:
 };
 
 template <class AnyLobe>
-ACDF_METHOD void CutRating<AnyLobe>::draw_guides() noexcept {
+ACDF_METHOD void CutRating<AnyLobe>::sample_guides() noexcept {
     float world[LobeGuides::most][3], light[LobeGuides::most];
-    of_.draw_guides(world, guides_);
+    of_.sample_guides(world, guides_);
     acdf_cut_pdf_wave(&of_.light, &of_.at, &cut_, world, static_cast<std::size_t>(guides_.count), light);
     guides_.weigh(light);
 }
@@ -130,7 +130,7 @@ ACDF_METHOD double CutRating<AnyLobe>::make() noexcept {
     acdf_cut_begin(&of_.light, &of_.at, &cut_);
     if (of_.parts > 1) {
         acdf_cut_ahead(&of_.light, &of_.at, &cut_, of_.parts);
-        draw_guides();
+        sample_guides();
         divide();
         share = weigh_cut(cut_, guides_, ratings_);
     }

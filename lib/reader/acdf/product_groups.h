@@ -1,7 +1,7 @@
 // Shading points of product sampling whose light is a local environment file of the fast shape (acdf/product.h):
-// which share of the samples its lights, groups of tiles and tiles get. C++17, header only, freestanding.
+// which share of the samples its bright tiles, groups of tiles and tiles get. C++17, header only, freestanding.
 //
-// All lights and groups that have much light are looked at at once, so that a lobe which tells many densities
+// All bright tiles and groups that have much light are looked at at once, so that a lobe which tells many densities
 // together does, and nothing waits for what was seen before. Then the groups that reflect most are opened: their
 // tiles are looked at. Numbers are of all parts, one after the other, without a branch: compilers take vectors.
 #pragma once
@@ -11,8 +11,8 @@
 
 namespace acdf {
 
-/// A point while it is prepared. Its parts, by number: lights, one that is none, groups, and the tiles of open
-/// groups. Lights and groups that give nothing are no parts.
+/// A point while it is prepared. Its parts, by number: bright tiles, one that is none, groups, and the tiles of
+/// open groups. Lights and groups that give nothing are no parts.
 template <class AnyLobe>
 class GroupRating {
 public:
@@ -45,7 +45,7 @@ private:
 
     ACDF_METHOD int add(int number, int entry, float light, float solid_angle) noexcept;
     ACDF_METHOD void measure() noexcept;
-    ACDF_METHOD void draw_guides() noexcept;
+    ACDF_METHOD void sample_guides() noexcept;
     ACDF_METHOD std::uint32_t nearest_row() const noexcept;
     ACDF_METHOD void look_at_much() noexcept;
     ACDF_METHOD void look(const Looks& looks) noexcept;
@@ -62,9 +62,9 @@ private:
     ACDF_METHOD void finish(AcdfFastCut& cut, float* probability) const noexcept;
 
     const PointOfLobe<AnyLobe>& of_;
-    int first_entry_;                                           ///< of the groups in the cut
-    int lights_, count_, all_;                                  ///< of parts: lights, lights and groups, and all
-    int open_ = 0, opened_[ACDF_FAST_CUT_OPEN];                 ///< parts that are groups whose tiles are looked at
+    int first_entry_;                           ///< of the groups in the cut
+    int bright_tiles_, count_, all_;            ///< of parts: bright tiles, bright tiles and groups, and all
+    int open_ = 0, opened_[ACDF_FAST_CUT_OPEN]; ///< parts that are groups whose tiles are looked at
     std::uint16_t entry_[most_parts + 1], part_of_[most_parts]; ///< of a part in the cut, and of that
     LobeGuides guides_;
     int guide_tile_[LobeGuides::most]; ///< no_tile: a light's
@@ -82,23 +82,24 @@ ACDF_METHOD int GroupRating<AnyLobe>::add(int number, int entry, float light, fl
     return number + (light > 0.0f);
 }
 
-/// Light and solid angle of lights and groups.
+/// Light and solid angle of bright tiles and groups.
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::measure() noexcept {
     const float* angles = acdf_local_group_angles(of_.light.tables);
-    const int ends = static_cast<int>(of_.light.fast.ends), lights = static_cast<int>(of_.light.light_count);
+    const int ends = static_cast<int>(of_.light.fast.ends),
+              bright_tiles = static_cast<int>(of_.light.bright_tile_count);
     const double of_all = 1.0 / of_.at.sum;
     const float unit = static_cast<float>(255.0 * of_.at.unit);
     std::int32_t masses[ACDF_FAST_CUT_GROUPS];
-    float weight[ACDF_MAX_LIGHTS] = {};
+    float weight[ACDF_MAX_BRIGHT_TILES] = {};
     int count = 0;
-    first_entry_ = static_cast<int>(acdf_fast_cut_lights(&of_.light));
+    first_entry_ = static_cast<int>(acdf_fast_cut_bright_tiles(&of_.light));
     acdf_fast_group_masses(&of_.light.fast, &of_.at.fast, masses);
     for (std::uint32_t i = 0; i < of_.at.lit; ++i)
         weight[acdf_local_lit(&of_.at, i)] = static_cast<float>(of_.at.light[i] * of_all);
-    for (int i = 0; i < lights; ++i) count = add(count, i, weight[i], 0.0f);
+    for (int i = 0; i < bright_tiles; ++i) count = add(count, i, weight[i], 0.0f);
     add(count, first_entry_ - 1, 0.0f, 0.0f);
-    lights_ = ++count;
+    bright_tiles_ = ++count;
     for (int i = 0; i < ends; ++i)
         count = add(count, first_entry_ + i, static_cast<float>(masses[i]) * unit, angles[i]);
     for (int i = 0; i < count; ++i) value_[i] = pdf_[i] = 0.0f;
@@ -107,17 +108,17 @@ ACDF_METHOD void GroupRating<AnyLobe>::measure() noexcept {
 
 /// Samples of the lobe's own sampler, and which light is there.
 template <class AnyLobe>
-ACDF_METHOD void GroupRating<AnyLobe>::draw_guides() noexcept {
+ACDF_METHOD void GroupRating<AnyLobe>::sample_guides() noexcept {
     const AcdfGrid grid = acdf_environment_grid(&of_.light.environment);
     float world[LobeGuides::most][3], light[LobeGuides::most];
-    of_.draw_guides(world, guides_);
+    of_.sample_guides(world, guides_);
     for (int i = 0; i < guides_.count; ++i) {
         const std::uint32_t square[2] = {guides_.square[0][i], guides_.square[1][i]};
         AcdfRange range[2];
         const std::uint32_t tile = acdf_local_fast_tile(&of_.light, square, range);
         const AcdfFastShare share = acdf_local_fast_find(&of_.light, &of_.at, tile, square, range);
-        light[i] = acdf_local_fast_density(&of_.light, &grid, range, &share);
-        guide_tile_[i] = acdf_local_light_of(&of_.light, tile) > 0 ? no_tile : static_cast<int>(tile);
+        light[i] = acdf_local_fast_cell_pdf(&of_.light, &grid, range, &share);
+        guide_tile_[i] = acdf_local_bright_tile_of(&of_.light, tile) > 0 ? no_tile : static_cast<int>(tile);
     }
     guides_.weigh(light);
 }
@@ -131,8 +132,8 @@ ACDF_METHOD std::uint32_t GroupRating<AnyLobe>::nearest_row() const noexcept {
                                       of_.light.fast.ends);
 }
 
-/// At lights that are bright, and where groups with much light are lit most. In other groups the lobe is taken to
-/// be what it is in the one before.
+/// At bright tiles that are bright, and where groups with much light are lit most. In other groups the lobe is
+/// taken to be what it is in the one before.
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::look_at_much() noexcept {
     const std::uint8_t* hearts = acdf_local_group_hearts(of_.light.tables, nearest_row(), of_.light.fast.ends);
@@ -145,8 +146,8 @@ ACDF_METHOD void GroupRating<AnyLobe>::look_at_much() noexcept {
     much.count = count;
     for (int k = 0; k < count; ++k) {
         const int part = much.part[k];
-        if (part < lights_) {
-            of_.above_surface(of_.light.lights[entry_[part]].direction, much.wi[k]);
+        if (part < bright_tiles_) {
+            of_.above_surface(of_.light.bright_tiles[entry_[part]].direction, much.wi[k]);
         } else {
             const std::uint32_t group = group_of(part);
             of_.above_surface(acdf_local_middle(of_.light.tables, ACDF_FAST_GROUP * group + hearts[group]),
@@ -154,7 +155,8 @@ ACDF_METHOD void GroupRating<AnyLobe>::look_at_much() noexcept {
         }
     }
     look(much);
-    for (int i = lights_ + 1; i < count_; ++i) value_[i] = light_in_[i] > least_light ? value_[i] : value_[i - 1];
+    for (int i = bright_tiles_ + 1; i < count_; ++i)
+        value_[i] = light_in_[i] > least_light ? value_[i] : value_[i - 1];
 }
 
 template <class AnyLobe>
@@ -168,9 +170,9 @@ ACDF_METHOD void GroupRating<AnyLobe>::look(const Looks& looks) noexcept {
 /// Mean and mass of parts, from what was seen there.
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::rate(int first, int end) noexcept {
-    const float drawn = static_cast<float>(guides_.drawn);
+    const float sampled = static_cast<float>(guides_.sampled);
     for (int i = first; i < end; ++i) {
-        const float own = 1.0f / (1.0f + solid_angle_[i] * drawn * pdf_[i]);
+        const float own = 1.0f / (1.0f + solid_angle_[i] * sampled * pdf_[i]);
         mean_[i] = own * value_[i];
         mass_[i] = own * pdf_[i] * solid_angle_[i];
     }
@@ -178,7 +180,7 @@ ACDF_METHOD void GroupRating<AnyLobe>::rate(int first, int end) noexcept {
 /// The same from a guide that lies in a part.
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::rate_guide(int part, int guide) noexcept {
-    const float expected = solid_angle_[part] * static_cast<float>(guides_.drawn);
+    const float expected = solid_angle_[part] * static_cast<float>(guides_.sampled);
     const float weight = 1.0f / (1.0f + expected * guides_.pdf[guide]);
     mean_[part] += weight * guides_.value[guide];
     mass_[part] += weight * guides_.pdf[guide] * solid_angle_[part];
@@ -186,14 +188,14 @@ ACDF_METHOD void GroupRating<AnyLobe>::rate_guide(int part, int guide) noexcept 
 
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::rate_groups() noexcept {
-    rate(lights_, count_);
+    rate(bright_tiles_, count_);
     for (int k = 0; k < guides_.count; ++k) {
         if (guide_tile_[k] == no_tile) continue;
         const int entry = first_entry_ + guide_tile_[k] / group_size, part = part_of_[entry];
         if (part < count_ && entry_[part] == entry) rate_guide(part, k);
     }
-    compare(lights_, count_, 0.7f, 0.0f);
-    for (int i = 0; i < lights_; ++i) {
+    compare(bright_tiles_, count_, 0.7f, 0.0f);
+    for (int i = 0; i < bright_tiles_; ++i) {
         mean_[i] = value_[i];
         mass_[i] = around_[i] = spread_[i] = 0.0f;
     }
@@ -223,10 +225,10 @@ ACDF_METHOD void GroupRating<AnyLobe>::choose() noexcept {
     const int wanted = (of_.parts - 8) / parts_per_open,
               room = wanted < ACDF_FAST_CUT_OPEN ? wanted : ACDF_FAST_CUT_OPEN;
     float square[ACDF_FAST_CUT_GROUPS], reflected[room_for<float>(ACDF_FAST_CUT_GROUPS)], best[ACDF_FAST_CUT_OPEN];
-    const int groups = count_ - lights_;
+    const int groups = count_ - bright_tiles_;
     if (room <= 0) return;
     for (int i = 0; i < groups; ++i) {
-        const int part = lights_ + i;
+        const int part = bright_tiles_ + i;
         reflected[i] = light_in_[part] * (mean_[part] + 0.3f * around_[part]);
         square[i] = reflected[i] * reflected[i] * solid_angle_[part];
     }
@@ -240,11 +242,11 @@ ACDF_METHOD void GroupRating<AnyLobe>::choose() noexcept {
             opened_[at] = opened_[at - 1];
         }
         best[at] = square[i];
-        opened_[at] = lights_ + i;
+        opened_[at] = bright_tiles_ + i;
     }
 }
 
-/// Looks at the tiles of the chosen groups, all at once. They take their groups' places.
+/// Looks at the tiles of the chosen groups, all at once. They take the numbers of their groups.
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::open_chosen() noexcept {
     const std::uint32_t last = of_.light.blend.tiles->tile_count - 1;
@@ -289,8 +291,8 @@ template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::finish(AcdfFastCut& cut, float* probability) const noexcept {
     float share[most_parts];
     memset(cut.open, 0, sizeof cut.open);
-    cut.lights = static_cast<std::uint32_t>(first_entry_);
-    cut.count = cut.lights + of_.light.fast.ends;
+    cut.bright_tiles = static_cast<std::uint32_t>(first_entry_);
+    cut.count = cut.bright_tiles + of_.light.fast.ends;
     for (int k = 0; k < open_; ++k) {
         float* tile = probability + count_ + group_size * k;
         const float inside = padded_sum(tile, group_size);
@@ -312,7 +314,7 @@ template <class AnyLobe>
 ACDF_METHOD double GroupRating<AnyLobe>::make(AcdfFastCut& cut) noexcept {
     float probability[room_for<float>(most)];
     measure();
-    draw_guides();
+    sample_guides();
     look_at_much();
     rate_groups();
     choose();

@@ -45,12 +45,12 @@ struct PointOfLobe {
 
     /// Adds samples of the lobe's own sampler, without weights, to none; their directions into `world`. In their
     /// place: what is written in pieces and copied at once would be waited for.
-    ACDF_METHOD void draw_guides(float (*world)[3], LobeGuides& out) const noexcept {
+    ACDF_METHOD void sample_guides(float (*world)[3], LobeGuides& out) const noexcept {
         const AcdfGrid grid = acdf_environment_grid(&light.environment);
-        const int drawn = parts < 12 ? 2 : LobeGuides::most;
-        out.drawn = drawn;
-        for (int i = 0; i < drawn; ++i) {
-            const ProductSample s = guide(lobe, lobe_at, i, drawn);
+        const int sampled = parts < 12 ? 2 : LobeGuides::most;
+        out.sampled = sampled;
+        for (int i = 0; i < sampled; ++i) {
+            const ProductSample s = guide(lobe, lobe_at, i, sampled);
             if (!(s.pdf > 0.0f && s.direction[2] > 0.0f)) continue;
             std::uint32_t square[2];
             frame.to_world(s.direction, world[out.count]);

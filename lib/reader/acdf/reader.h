@@ -57,8 +57,8 @@ struct LoadOptions {
     LoadOptions(const Limits& limits) noexcept : limits(limits) {}
 
     Limits limits;
-    /// Whether runtime tables are made: draws and densities take a fraction of the time. Without them nothing more
-    /// is allocated, and the file's own trees are walked.
+    /// Whether runtime tables are made: samples and densities take a fraction of the time. Without them nothing
+    /// more is allocated, and the file's own trees are walked.
     bool tables = true;
     /// Where the memory comes from that an open file keeps; by default the C library. It must stay usable until the
     /// file is gone. What is needed for a moment, while bytes are checked, is the C library's, but for the nodes of a
@@ -111,7 +111,7 @@ public:
     std::uint32_t tree_units() const noexcept { return tree_units_; }
     std::uint64_t size() const noexcept { return size_; }
     /// What the file is to be combined with; null: it is to be used alone.
-    const AcdfCompany* company() const noexcept { return company_; }
+    const AcdfPartner* partner() const noexcept { return partner_; }
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
     std::uint64_t table_bytes() const noexcept {
         return 4 * std::uint64_t{halved_         ? halved_->words
@@ -151,9 +151,9 @@ private:
     AcdfBlend blend_ = {};
     AcdfFast fast_ = {};
     const AcdfLocalHeader* local_ = nullptr;
-    const AcdfLight* lights_ = nullptr;
-    const AcdfCompany* company_ = nullptr;
-    AcdfPlaceTable places_ = {};
+    const AcdfBrightTile* bright_tiles_ = nullptr;
+    const AcdfPartner* partner_ = nullptr;
+    AcdfVisibilityTable visibility_ = {};
     AcdfPortalTable portals_ = {};
     const AcdfViews* views_ = nullptr;
     const float* nodes_ = nullptr;

@@ -1,5 +1,5 @@
 /* Grids in floats, where these are sure to tell what acdf/grid.h does: the square of a direction, and the
- * directions of cells, as acdf/cells.h draws them; on lat-long grids (acdf_row_...) by a table of the heights
+ * directions of cells, as acdf/cells.h samples them; on lat-long grids (acdf_row_...) by a table of the heights
  * between rows, and densities without trigonometry. Cells without tilts. */
 #ifndef ACDF_ROW_HEIGHTS_H
 #define ACDF_ROW_HEIGHTS_H
@@ -107,7 +107,7 @@ ACDF_INLINE double acdf_row_quarters(double x, int32_t* quarter) {
 #endif
 }
 
-/* The direction of acdf_sphere_place but for the rounding of floats. Returns 0, and leaves `out`, next to the
+/* The direction of acdf_sphere_position but for the rounding of floats. Returns 0, and leaves `out`, next to the
  * borders of a cell or to a pole, and where there are tilts. */
 ACDF_INLINE int acdf_row_direction(const double* z, uint32_t columns, const AcdfRange range[2], const double u[2],
                                    float out[3]) {
@@ -141,8 +141,8 @@ ACDF_INLINE int acdf_row_direction(const double* z, uint32_t columns, const Acdf
 
 /* As acdf_row_square. */
 ACDF_INLINE int acdf_fold_square(uint32_t columns, uint32_t rows, const float direction[3], uint32_t square[2]) {
-    AcdfPlace place;
-    if (!acdf_direction_place(1, direction, &place)) return 0;
+    AcdfDirectionKeys place;
+    if (!acdf_keys_of_direction(1, direction, &place)) return 0;
     return acdf_sure_step((float)columns * (0.5f - 0.5f * place.slope), (float)columns * 2.0f * ACDF_FOLD_BORDER,
                           &square[0]) &
            acdf_sure_step((float)rows * (0.5f + 0.5f * place.cap), (float)rows * 2.0f * ACDF_FOLD_BORDER,

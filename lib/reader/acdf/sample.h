@@ -13,9 +13,9 @@
 #ifndef ACDF_SAMPLE_H
 #define ACDF_SAMPLE_H
 
-#include <acdf/company.h>
 #include <acdf/grid.h>
 #include <acdf/halvings.h>
+#include <acdf/partner.h>
 #include <acdf/random.h>
 #include <acdf/short_curves.h>
 
@@ -32,7 +32,7 @@ typedef struct AcdfEnvironment {
     double total;                 /* integral of the target over the sphere */
     uint32_t parameterization;    /* ACDF_PARAM_OCTAHEDRAL: u and v of the square; all else: phi and theta */
     const AcdfHalvedTree* halved; /* null: curves */
-    const AcdfCompany* company;   /* null: to be used alone */
+    const AcdfPartner* partner;   /* null: to be used alone */
     uint32_t tree_units;          /* of two bytes, that `tree` has; 0: not known */
 } AcdfEnvironment;
 
@@ -76,11 +76,12 @@ ACDF_INLINE AcdfDirectionSample acdf_environment_halved_sample(const AcdfEnviron
     u[1] = acdf_span_fraction(&steps[1], given[1]);
     p = acdf_span_share(&steps[0]) * acdf_span_share(&steps[1]);
     if (env->parameterization != ACDF_PARAM_OCTAHEDRAL)
-        return acdf_sphere_place_between(env->columns, range, u, p, acdf_halved_height(env->halved, range[1].low),
-                                         acdf_halved_height(env->halved, range[1].high));
+        return acdf_sphere_position_between(env->columns, range, u, p,
+                                            acdf_halved_height(env->halved, range[1].low),
+                                            acdf_halved_height(env->halved, range[1].high));
     {
         const AcdfGrid grid = acdf_environment_grid(env);
-        return acdf_grid_place(&grid, range, u, p);
+        return acdf_grid_position(&grid, range, u, p);
     }
 }
 
@@ -158,7 +159,7 @@ ACDF_OUTLINE AcdfDirectionSample acdf_environment_curves_sample(const AcdfEnviro
     u[1] = acdf_unit_interval(u1);
     acdf_sphere_ranges(env->columns, env->rows, range);
     p = acdf_tree_sample(env->tree, env->root, u, range);
-    return acdf_grid_place(&grid, range, u, p);
+    return acdf_grid_position(&grid, range, u, p);
 }
 
 /* Where a direction falls: its cell, the random numbers that lead there, and the fractions t[axis] across the cell

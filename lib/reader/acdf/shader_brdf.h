@@ -1,8 +1,8 @@
-/* Draws and densities of BRDF files for shaders, as acdf/brdf.h says (SPEC.md 6.8), in floats, over the words that
+/* Samples and pdfs of BRDF files for shaders, as acdf/brdf.h says (SPEC.md 6.8), in floats, over the words that
  * acdf::ShaderTables::make_walk (acdf/shader_tables.h) makes. One text for processors and for shaders of every
- * language (acdf/dialect.h), in which acdf/shader_walk.h stands, too: a shader has lights and surfaces.
+ * language (acdf/dialect.h), in which acdf/shader_walk.h stands, too: a shader has bright tiles and surfaces.
  *
- * Trees (acdf/shader_tree.h) divide the square of half-vectors, and leaves are its cells. A draw has the density
+ * Trees (acdf/shader_tree.h) divide the square of half-vectors, and leaves are its cells. A sample has the density
  * that its direction has at its own place in the cell, as the reader's has.
  *
  * Densities are the reader's but for the rounding of floats, below 1e-5 of them and 1e-6 of them over the cosine of
@@ -195,8 +195,8 @@ ACDF_FN4(AcdfVector, acdf_reflected, AcdfShaderView, view, ACDF_F32, azimuth, AC
 /* ---- densities of half-vectors ---------------------------------------------------------------------- */
 
 /* Density of a direction of height z where a walk ended: of the cell, and of the cosine's share. */
-ACDF_FN5(ACDF_F32, acdf_brdf_density_at, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32,
-         spread, ACDF_F32, z) {
+ACDF_FN5(ACDF_F32, acdf_brdf_pdf_at, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32, spread,
+         ACDF_F32, z) {
     ACDF_LET(ACDF_F32, lobe) =
         ACDF_MIN(end.given / view.sum * acdf_word_as_float(tables, end.leaf + 1u) * spread, 3.402823466e38f);
     if (view.diffuse == 0.0f) {
@@ -205,7 +205,7 @@ ACDF_FN5(ACDF_F32, acdf_brdf_density_at, ACDF_TABLES, tables, AcdfShaderView, vi
     return (1.0f - view.diffuse) * lobe + view.diffuse * ACDF_MAX(z, 0.0f) * 0.31830989f;
 }
 
-/* Density per steradian with which acdf_brdf_walk_sample draws wi (unit) for a view. 0 where none falls, and for
+/* Density per steradian with which acdf_brdf_walk_sample samples wi (unit) for a view. 0 where none falls, and for
  * directions whose length differs from 1 by more than 5e-4 or that are not finite. */
 ACDF_FN5(ACDF_F32, acdf_brdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderView, view, ACDF_F32, x, ACDF_F32, y,
          ACDF_F32, z) {
@@ -216,11 +216,11 @@ ACDF_FN5(ACDF_F32, acdf_brdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderView, view
     if (view.mix.root == ACDF_WALK_NONE) {
         return view.diffuse * ACDF_MAX(z, 0.0f) * 0.31830989f;
     }
-    return acdf_brdf_density_at(tables, view, acdf_walk_find(tables, view.mix, place.key0, place.key1),
-                                place.spread, z);
+    return acdf_brdf_pdf_at(tables, view, acdf_walk_find(tables, view.mix, place.key0, place.key1), place.spread,
+                            z);
 }
 
-/* ---- draws of half-vectors -------------------------------------------------------------------------- */
+/* ---- samples of half-vectors -------------------------------------------------------------------------- */
 
 /* Whether a place lies in the cell of a leaf. */
 ACDF_FN3(ACDF_U32, acdf_leaf_holds, ACDF_TABLES, tables, ACDF_U32, leaf, AcdfShaderHalf, place) {
@@ -238,9 +238,9 @@ ACDF_FN2(AcdfVector, acdf_as_returned, ACDF_TABLES, tables, AcdfVector, d) {
                        ACDF_FLOAT(ACDF_BITS(d.z) | zero));
 }
 
-/* Places a direction in the cell where a walk ended. Near its border rounding may carry it over: then it moves
+/* Visibility a direction in the cell where a walk ended. Near its border rounding may carry it over: then it moves
  * towards the middle, so that its density is that of the cell. */
-ACDF_FN4(AcdfWalkSample, acdf_draw_in_cell, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32,
+ACDF_FN4(AcdfWalkSample, acdf_sample_in_cell, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32,
          side) {
     ACDF_VAR(ACDF_F32, part0) = acdf_walk_part(end.numbers.at0, end.numbers.width0);
     ACDF_VAR(ACDF_F32, part1) = acdf_walk_part(end.numbers.at1, end.numbers.width1);
@@ -254,16 +254,16 @@ ACDF_FN4(AcdfWalkSample, acdf_draw_in_cell, ACDF_TABLES, tables, AcdfShaderView,
         d = acdf_as_returned(tables, acdf_reflected(view, azimuth, cap, side));
         ACDF_LET(AcdfShaderHalf, place) = acdf_half_of(view, d.x, d.y, d.z);
         if (acdf_leaf_holds(tables, end.leaf, place) != 0u) {
-            return acdf_walk_drawn(d, acdf_brdf_density_at(tables, view, end, place.spread, d.z));
+            return acdf_walk_sampled(d, acdf_brdf_pdf_at(tables, view, end, place.spread, d.z));
         }
         part0 = 0.5f + 0.75f * (part0 - 0.5f);
         part1 = 0.5f + 0.75f * (part1 - 0.5f);
     }
     /* wo and wi nearly opposite: their half-vector is lost in rounding. */
-    return acdf_walk_drawn(d, ACDF_MAX(acdf_brdf_walk_pdf(tables, view, d.x, d.y, d.z), 1.1754944e-38f));
+    return acdf_walk_sampled(d, ACDF_MAX(acdf_brdf_walk_pdf(tables, view, d.x, d.y, d.z), 1.1754944e-38f));
 }
 
-/* Draws wi for a view and two random words: n0 / 2^32 (azimuth of the half-vector) and n1 / 2^32 (its height) are
+/* Samples wi for a view and two random words: n0 / 2^32 (azimuth of the half-vector) and n1 / 2^32 (its height) are
  * the random numbers of acdf_brdf_sample. wi may lie below the surface. pdf 0 where nothing is reflected. */
 ACDF_FN4(AcdfWalkSample, acdf_brdf_walk_sample, ACDF_TABLES, tables, AcdfShaderView, view, ACDF_U32, n0, ACDF_U32,
          n1) {
@@ -274,17 +274,17 @@ ACDF_FN4(AcdfWalkSample, acdf_brdf_walk_sample, ACDF_TABLES, tables, AcdfShaderV
         ACDF_LET(AcdfVector, d) =
             acdf_walk_cosine(acdf_point_of_tree(0u), acdf_walk_part(numbers.at0, numbers.width0),
                              acdf_walk_part(numbers.at1, cosine));
-        return acdf_walk_drawn(d, acdf_brdf_walk_pdf(tables, view, d.x, d.y, d.z));
+        return acdf_walk_sampled(d, acdf_brdf_walk_pdf(tables, view, d.x, d.y, d.z));
     }
     if (view.mix.root == ACDF_WALK_NONE) {
-        return acdf_walk_drawn(acdf_vector(0.0f, 0.0f, 0.0f), 0.0f);
+        return acdf_walk_sampled(acdf_vector(0.0f, 0.0f, 0.0f), 0.0f);
     }
     numbers.at1 = numbers.at1 - cosine;
     numbers.width1 = numbers.width1 - cosine;
     if (view.mirrored != 0u) { /* both halves run through the same table */
         numbers.at0 = ACDF_SELECT((n0 >> 31u) != 0u, n0 - 0x80000000u, 0x7FFFFFFFu - n0);
     }
-    return acdf_draw_in_cell(tables, view, acdf_walk_draw(tables, view.mix, numbers), side);
+    return acdf_sample_in_cell(tables, view, acdf_walk_sample_leaf(tables, view.mix, numbers), side);
 }
 
 #ifdef __cplusplus

@@ -111,7 +111,7 @@ ACDF_FN2(AcdfTileSpot, acdf_tiles_spot, ACDF_TABLES, tables, AcdfUnit, d) {
     ACDF_LET(ACDF_U32, rows) = ACDF_WORD(tables, ACDF_TILES_ROWS);
     ACDF_VAR(AcdfTileSpot, spot);
     if (ACDF_WORD(tables, ACDF_WALK_OCTAHEDRAL) != 0u) {
-        ACDF_LET(AcdfPlace, place) = acdf_square_place(d.x, d.y, d.z, d.sin2, d.length2);
+        ACDF_LET(AcdfDirectionKeys, place) = acdf_square_keys(d.x, d.y, d.z, d.sin2, d.length2);
         spot.column = acdf_tiles_step(place.key0 << 8u, columns);
         spot.row = acdf_tiles_step(place.key1 << 8u, rows);
     } else {
@@ -199,9 +199,10 @@ ACDF_FN3(AcdfVector, acdf_tiles_direction, ACDF_TABLES, tables, AcdfTileCell, ce
         tables, cell, acdf_tiles_kept(part0 * width0, width0, columns * ACDF_TILES_INSIDE * 0.15915494f), part1);
 }
 
-/* ---- draws and densities ---------------------------------------------------------------------------- */
+/* ---- samples and densities ---------------------------------------------------------------------------- */
 
-/* 1: lights and rows of grids serve a point. A compiler that knows the tables leaves them out where there are none.
+/* 1: bright tiles and rows of grids serve a point. A compiler that knows the tables leaves them out where there are
+ * none.
  */
 ACDF_FN2(ACDF_U32, acdf_tiles_serve, ACDF_TABLES, tables, AcdfShaderPoint, here) {
     return ACDF_SELECT(here.mix.root == ACDF_WALK_ON_GRIDS, ACDF_WORD(tables, ACDF_WALK_FAST), 0u);
@@ -210,7 +211,7 @@ ACDF_FN2(ACDF_U32, acdf_tiles_serve, ACDF_TABLES, tables, AcdfShaderPoint, here)
 /* The probability of a tile at a point. */
 ACDF_FN4(ACDF_F32, acdf_tiles_given, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_U32, tile, ACDF_U32, light) {
     if (light != 0u) { /* no row gives it any */
-        return acdf_point_light(tables, here, light - 1u) / here.sum;
+        return acdf_point_bright_tile(tables, here, light - 1u) / here.sum;
     }
     return acdf_mixture_weight(here.mix) / here.sum * acdf_tiles_share(tables, here.mix, tile);
 }
@@ -230,8 +231,8 @@ ACDF_FN3(ACDF_F32, acdf_tiles_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, A
     return ACDF_MIN(given / (angle * acdf_tiles_height(tables, cell)), 3.402823466e38f);
 }
 
-/* Draws a direction in a tile; ACDF_WALK_ON_GRIDS: in one that the mixture draws. A group and a tile, then a band
- * and a cell, are chosen by one and the same loop: shaders have functions wherever they are called. */
+/* Samples a direction in a tile; ACDF_WALK_ON_GRIDS: in one that the mixture samples. A group and a tile, then a
+ * band and a cell, are chosen by one and the same loop: shaders have functions wherever they are called. */
 ACDF_FN4(AcdfVector, acdf_tiles_sample, ACDF_TABLES, tables, AcdfWalkMixture, mix, ACDF_U32, light, AcdfWalkNumbers,
          numbers) {
     ACDF_LET(ACDF_U32, grids) = ACDF_WORD(tables, ACDF_TILES_GRIDS);
@@ -239,42 +240,42 @@ ACDF_FN4(AcdfVector, acdf_tiles_sample, ACDF_TABLES, tables, AcdfWalkMixture, mi
     ACDF_VAR(AcdfWalkNumbers, left) = numbers;
     ACDF_VAR(AcdfTileSums, sums) = groups;
     ACDF_VAR(AcdfTileBox, box) = acdf_tiles_record(tables, 0u);
-    ACDF_VAR(AcdfTileDraw, drawn);
+    ACDF_VAR(AcdfTileSample, sampled);
     ACDF_VAR(ACDF_U32, count) = ACDF_WORD(tables, ACDF_TILES_GROUPS);
     ACDF_VAR(ACDF_U32, band) = 0u;
     ACDF_VAR(ACDF_U32, stage) = ACDF_SELECT(light == ACDF_WALK_ON_GRIDS, 0u, 2u);
-    drawn.i = ACDF_SELECT(light == ACDF_WALK_ON_GRIDS, 0u, light);
+    sampled.i = ACDF_SELECT(light == ACDF_WALK_ON_GRIDS, 0u, light);
     while (stage < 4u) {
         if (stage == 1u) {
-            ACDF_LET(AcdfTileGroup, group) = acdf_tiles_group(tables, mix, groups, drawn.i);
+            ACDF_LET(AcdfTileGroup, group) = acdf_tiles_group(tables, mix, groups, sampled.i);
             sums = group.sums;
             count = 16u;
-            band = 16u * drawn.i;
+            band = 16u * sampled.i;
         } else if (stage == 2u) {
-            box = acdf_tiles_record(tables, band + drawn.i);
+            box = acdf_tiles_record(tables, band + sampled.i);
             sums = acdf_tiles_list(grids, box.ends);
             count = acdf_tiles_cells(box.width1, box.shift1);
         } else if (stage == 3u) {
-            band = drawn.i;
+            band = sampled.i;
             sums = acdf_tiles_list(grids, acdf_tiles_band(box, band));
             count = acdf_tiles_cells(box.width0, box.shift0);
         }
         if (stage == 0u || stage == 3u) {
-            drawn = acdf_tiles_chosen(left.at0, left.width0);
+            sampled = acdf_tiles_chosen(left.at0, left.width0);
         } else {
-            drawn = acdf_tiles_chosen(left.at1, left.width1);
+            sampled = acdf_tiles_chosen(left.at1, left.width1);
         }
-        drawn = acdf_tiles_choose(tables, sums, count, drawn);
+        sampled = acdf_tiles_choose(tables, sums, count, sampled);
         if (stage == 0u || stage == 3u) {
-            left.at0 = drawn.at;
-            left.width0 = drawn.width;
+            left.at0 = sampled.at;
+            left.width0 = sampled.width;
         } else {
-            left.at1 = drawn.at;
-            left.width1 = drawn.width;
+            left.at1 = sampled.at;
+            left.width1 = sampled.width;
         }
         stage = stage + 1u;
     }
-    return acdf_tiles_direction(tables, acdf_tiles_cell(box, drawn.i, band), left);
+    return acdf_tiles_direction(tables, acdf_tiles_cell(box, sampled.i, band), left);
 }
 
 #ifdef __cplusplus

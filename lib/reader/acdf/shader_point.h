@@ -15,21 +15,21 @@ extern "C" {
 /* Made once for a shading point, it serves all samples there. Up to three rows are mixed. */
 ACDF_STRUCT_BEGIN(AcdfShaderPoint)
 ACDF_FIELD(AcdfWalkMixture, mix)
-ACDF_FIELD(ACDF_U32, lights)    /* how many */
-ACDF_FIELD(ACDF_F32, light_sum) /* of their weights */
-ACDF_FIELD(ACDF_F32, sum)       /* of all weights */
-ACDF_FIELD(ACDF_F32, cosine)    /* share of the cosine lobe */
-ACDF_FIELD(ACDF_F32, x)         /* the unit normal */
+ACDF_FIELD(ACDF_U32, bright_tiles) /* how many */
+ACDF_FIELD(ACDF_F32, light_sum)    /* of their weights */
+ACDF_FIELD(ACDF_F32, sum)          /* of all weights */
+ACDF_FIELD(ACDF_F32, cosine)       /* share of the cosine lobe */
+ACDF_FIELD(ACDF_F32, x)            /* the unit normal */
 ACDF_FIELD(ACDF_F32, y)
 ACDF_FIELD(ACDF_F32, z)
 ACDF_FIELD(ACDF_F32, scale) /* of it to that of the weights */
 ACDF_STRUCT_END(AcdfShaderPoint)
 
-/* What draws from the whole tree at a link. */
+/* What samples from the whole tree at a link. */
 ACDF_FN1(AcdfShaderPoint, acdf_point_of_tree, ACDF_U32, root) {
     ACDF_VAR(AcdfShaderPoint, here);
     here.mix = acdf_mixture_below(root, 1.0f);
-    here.lights = 0u;
+    here.bright_tiles = 0u;
     here.light_sum = 0.0f;
     here.sum = 1.0f;
     here.cosine = 0.0f;
@@ -46,8 +46,8 @@ ACDF_FN1(AcdfShaderPoint, acdf_point_anywhere, ACDF_TABLES, tables) {
 }
 
 /* Weight of light k: acdf_cap_weight of acdf/local_point.h. */
-ACDF_FN3(ACDF_F32, acdf_point_light, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_U32, k) {
-    ACDF_LET(ACDF_U32, light) = ACDF_WORD(tables, ACDF_WALK_LIGHTS) + 8u * k;
+ACDF_FN3(ACDF_F32, acdf_point_bright_tile, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_U32, k) {
+    ACDF_LET(ACDF_U32, light) = ACDF_WORD(tables, ACDF_WALK_BRIGHT_TILES) + 8u * k;
     ACDF_LET(ACDF_F32, height) =
         here.scale * (here.x * acdf_word_as_float(tables, light) + here.y * acdf_word_as_float(tables, light + 1u) +
                       here.z * acdf_word_as_float(tables, light + 2u));
@@ -171,7 +171,7 @@ ACDF_FN2(AcdfShaderPoint, acdf_point_of_bins, ACDF_TABLES, tables, AcdfShaderBin
     return acdf_point_of_tree(ACDF_SELECT(acdf_word_as_float(tables, at + 1u) > 0.0f, root, ACDF_WALK_NONE));
 }
 
-/* Where bins share tiles: a mixture of their rows, and the lights. */
+/* Where bins share tiles: a mixture of their rows, and the bright tiles. */
 ACDF_FN5(AcdfShaderPoint, acdf_point_of_rows, ACDF_TABLES, tables, AcdfShaderBins, bins, ACDF_F32, x, ACDF_F32, y,
          ACDF_F32, z) {
     ACDF_LET(ACDF_U32, n) = ACDF_WORD(tables, ACDF_WALK_SUBDIVISIONS);
@@ -194,10 +194,10 @@ ACDF_FN5(AcdfShaderPoint, acdf_point_of_rows, ACDF_TABLES, tables, AcdfShaderBin
     if (here.mix.root != root) { /* one of them is not stored */
         return acdf_point_of_tree(here.mix.root);
     }
-    here.lights = ACDF_WORD(tables, ACDF_WALK_LIGHT_COUNT);
+    here.bright_tiles = ACDF_WORD(tables, ACDF_WALK_BRIGHT_TILE_COUNT);
     ACDF_VAR(ACDF_U32, k) = 0u;
-    for (k = 0u; k < here.lights; k = k + 1u) {
-        here.light_sum = here.light_sum + acdf_point_light(tables, here, k);
+    for (k = 0u; k < here.bright_tiles; k = k + 1u) {
+        here.light_sum = here.light_sum + acdf_point_bright_tile(tables, here, k);
     }
     here.sum = here.light_sum + acdf_mixture_weight(here.mix);
     if (!(here.sum > 0.0f)) {

@@ -56,8 +56,9 @@ ACDF_FN2(AcdfVector, acdf_square_direction, ACDF_F32, across, ACDF_F32, along) {
 }
 
 /* Where the square shows a direction of nearly unit length that is not a pole, by 1 - 2 u (`slope`) and 2 v - 1
- * (`cap`), and keys, u and v in steps of 2^-24; sin2 and length2 as of acdf_place_of. */
-ACDF_FN5(AcdfPlace, acdf_square_place, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z, ACDF_F32, sin2, ACDF_F32, length2) {
+ * (`cap`), and keys, u and v in steps of 2^-24; sin2 and length2 as of acdf_direction_keys. */
+ACDF_FN5(AcdfDirectionKeys, acdf_square_keys, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z, ACDF_F32, sin2, ACDF_F32,
+         length2) {
     ACDF_LET(ACDF_F32, r) = ACDF_SQRT(acdf_cap_of(z, sin2, length2));
     ACDF_LET(ACDF_F32, ax) = ACDF_ABS(x);
     ACDF_LET(ACDF_F32, ay) = ACDF_ABS(y);
@@ -69,7 +70,7 @@ ACDF_FN5(AcdfPlace, acdf_square_place, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z, AC
     ACDF_LET(ACDF_F32, less) = ACDF_SELECT(z < 0.0f, 1.0f - major, minor);
     ACDF_LET(ACDF_U32, a) = ACDF_BITS(ACDF_SELECT(ay > ax, less, more));
     ACDF_LET(ACDF_U32, b) = ACDF_BITS(ACDF_SELECT(ay > ax, more, less));
-    ACDF_VAR(AcdfPlace, place);
+    ACDF_VAR(AcdfDirectionKeys, place);
     place.slope = ACDF_FLOAT(a | (ACDF_BITS(x) & 0x80000000u));
     place.cap = ACDF_FLOAT(b | (ACDF_BITS(y) & 0x80000000u));
     place.key0 = ACDF_TO_U32(ACDF_MIN((1.0f - place.slope) * ACDF_SQUARE_HALF, ACDF_SQUARE_LAST));

@@ -21,7 +21,7 @@ public:
     /// Makes the tables of acdf/shader_walk.h of a file that is not empty: of environments and local environments,
     /// on either grid; and those of acdf/shader_brdf.h of BRDFs. `unsupported` where there are none: for tables,
     /// and for cells that tilt (--fit pdf). `out` then is empty. Work and memory are in proportion to the cells,
-    /// some 60 bytes each, and rows; of the fast shape to the file. Places are left out: what serves a normal
+    /// some 60 bytes each, and rows; of the fast shape to the file. Visibility are left out: what serves a normal
     /// anywhere serves it at each of them.
     static Status make(const File& file, ShaderTables& out) noexcept;
 

@@ -16,7 +16,8 @@ extern "C" {
 
 /* ---- tables of the fast shape ----------------------------------------------------------------------- */
 
-/* Words of its header, which follows that of acdf/shader_tree.h. Places are words from the start of the tables. */
+/* Words of its header, which follows that of acdf/shader_tree.h. Visibility are words from the start of the tables.
+ */
 #define ACDF_TILES_COLUMNS 32u /* of the grid of directions */
 #define ACDF_TILES_ROWS 33u
 #define ACDF_TILES_GROUPS 34u /* of 16 tiles */
@@ -35,7 +36,7 @@ extern "C" {
 
 #define ACDF_TILES_FLAG 0x8000u /* of a part of a split: it is a tile */
 #define ACDF_TILES_INSIDE                                                                                          \
-    9.536743e-7f /* draws stay 2^-20 inside their cell: radians, or parts of the square's side */
+    9.536743e-7f /* samples stay 2^-20 inside their cell: radians, or parts of the square's side */
 
 /* ---- sums ------------------------------------------------------------------------------------------- */
 
@@ -90,48 +91,49 @@ ACDF_FN1(ACDF_U32, acdf_tiles_whole, AcdfTileSums, sums) {
     return (sums.weight0 + sums.weight1 + sums.weight2) * ACDF_SELECT(sums.wide != 0u, 32767u, 255u);
 }
 
-/* Which number was drawn, and what is left of the random number. */
-ACDF_STRUCT_BEGIN(AcdfTileDraw)
+/* Which number was sampled, and what is left of the random number. */
+ACDF_STRUCT_BEGIN(AcdfTileSample)
 ACDF_FIELD(ACDF_U32, i)
 ACDF_FIELD(ACDF_U32, at)
 ACDF_FIELD(ACDF_U32, width)
-ACDF_STRUCT_END(AcdfTileDraw)
+ACDF_STRUCT_END(AcdfTileSample)
 
 /* The first one, of a random number of which nothing was used. */
-ACDF_FN2(AcdfTileDraw, acdf_tiles_chosen, ACDF_U32, at, ACDF_U32, width) {
-    ACDF_VAR(AcdfTileDraw, drawn);
-    drawn.i = 0u;
-    drawn.at = at;
-    drawn.width = width;
-    return drawn;
+ACDF_FN2(AcdfTileSample, acdf_tiles_chosen, ACDF_U32, at, ACDF_U32, width) {
+    ACDF_VAR(AcdfTileSample, sampled);
+    sampled.i = 0u;
+    sampled.at = at;
+    sampled.width = width;
+    return sampled;
 }
 
 /* One of `count` from the first one on. */
-ACDF_FN4(AcdfTileDraw, acdf_tiles_choose, ACDF_TABLES, tables, AcdfTileSums, sums, ACDF_U32, count, AcdfTileDraw,
-         first) {
-    ACDF_VAR(AcdfTileDraw, drawn) = first;
+ACDF_FN4(AcdfTileSample, acdf_tiles_choose, ACDF_TABLES, tables, AcdfTileSums, sums, ACDF_U32, count,
+         AcdfTileSample, first) {
+    ACDF_VAR(AcdfTileSample, sampled) = first;
     ACDF_VAR(ACDF_U32, last) = count;
     ACDF_VAR(ACDF_U32, low) = 0u;
     ACDF_VAR(ACDF_U32, high) = acdf_tiles_whole(sums);
-    while (drawn.i + 1u < last) {
-        ACDF_LET(ACDF_U32, middle) = (drawn.i + last) >> 1u;
+    while (sampled.i + 1u < last) {
+        ACDF_LET(ACDF_U32, middle) = (sampled.i + last) >> 1u;
         ACDF_LET(ACDF_U32, sum) =
             sums.weight0 * acdf_tiles_number(tables, sums.word, sums.wide, sums.first0 + middle - 1u) +
             sums.weight1 * acdf_tiles_number(tables, sums.word, sums.wide, sums.first1 + middle - 1u) +
             sums.weight2 * acdf_tiles_number(tables, sums.word, sums.wide, sums.first2 + middle - 1u);
-        ACDF_LET(ACDF_U32, border) = acdf_walk_border(ACDF_TO_F32(sum - low), ACDF_TO_F32(high - sum), drawn.width);
-        if (drawn.at < border) {
+        ACDF_LET(ACDF_U32, border) =
+            acdf_walk_border(ACDF_TO_F32(sum - low), ACDF_TO_F32(high - sum), sampled.width);
+        if (sampled.at < border) {
             last = middle;
             high = sum;
-            drawn.width = border;
+            sampled.width = border;
         } else {
-            drawn.i = middle;
+            sampled.i = middle;
             low = sum;
-            drawn.at = drawn.at - border;
-            drawn.width = drawn.width - border;
+            sampled.at = sampled.at - border;
+            sampled.width = sampled.width - border;
         }
     }
-    return drawn;
+    return sampled;
 }
 
 /* ---- rows ------------------------------------------------------------------------------------------- */

@@ -3,9 +3,9 @@
  * processors and for shaders of every language (acdf/dialect.h).
  *
  * A tree of splits ends in leaves. A split is known by its key, which directions have too, so that one tree serves
- * draws and densities, and both multiply the same factors in the same order. Random numbers are whole, and what is
- * left of them is exact: a cell of probability p is drawn with p but for 2^-24 of it a split, which is where floats
- * put borders. */
+ * samples and densities, and both multiply the same factors in the same order. Random numbers are whole, and what
+ * is left of them is exact: a cell of probability p is sampled with p but for 2^-24 of it a split, which is where
+ * floats put borders. */
 #ifndef ACDF_SHADER_TREE_H
 #define ACDF_SHADER_TREE_H
 
@@ -17,7 +17,8 @@ extern "C" {
 
 /* ---- tables ----------------------------------------------------------------------------------------- */
 
-/* Words of the header; `link` is a node, or a leaf with its flag. Places are words from the start of the tables. */
+/* Words of the header; `link` is a node, or a leaf with its flag. Visibility are words from the start of the
+ * tables. */
 #define ACDF_WALK_SIZE 0u        /* of all, in words */
 #define ACDF_WALK_OCTAHEDRAL 1u  /* 1: positions lie on the octahedral square, 0: on a lat-long grid */
 #define ACDF_WALK_ENVIRONMENT 2u /* link of the tree of all normals */
@@ -33,8 +34,9 @@ extern "C" {
     11u /* f32, 256 pairs: what parts a code gives to the lower and to the upper half of a split */
 #define ACDF_WALK_CODE_ROWS 12u /* bytes, a code a split: `stride` of them a row */
 #define ACDF_WALK_STRIDE 13u
-#define ACDF_WALK_LIGHTS 14u /* 8 words each: direction (3), radius, share (f32), link, and two of no meaning */
-#define ACDF_WALK_LIGHT_COUNT 15u
+#define ACDF_WALK_BRIGHT_TILES                                                                                     \
+    14u /* 8 words each: direction (3), radius, share (f32), link, and two of no meaning */
+#define ACDF_WALK_BRIGHT_TILE_COUNT 15u
 #define ACDF_WALK_COSINE 16u     /* f32: share of a cosine lobe about the normal */
 #define ACDF_WALK_VIEWS 17u      /* of BRDFs, 4 words each (acdf/shader_brdf.h) */
 #define ACDF_WALK_VIEW_COUNT 18u /* elevations */
@@ -142,22 +144,22 @@ ACDF_FN4(AcdfWalkMixture, acdf_mixture_part, ACDF_TABLES, tables, AcdfWalkMixtur
 /* Words of a leaf; of what they tell, acdf/shader_walk.h and acdf/shader_brdf.h speak. */
 #define ACDF_LEAF_WORDS 10u
 
-/* What is drawn. */
+/* What is sampled. */
 ACDF_STRUCT_BEGIN(AcdfWalkSample)
 ACDF_FIELD(ACDF_F32, x) /* a unit direction */
 ACDF_FIELD(ACDF_F32, y)
 ACDF_FIELD(ACDF_F32, z)
-ACDF_FIELD(ACDF_F32, pdf) /* sr^-1; 0: nothing was drawn */
+ACDF_FIELD(ACDF_F32, pdf) /* sr^-1; 0: nothing was sampled */
 ACDF_STRUCT_END(AcdfWalkSample)
 
 /* A direction with its density. */
-ACDF_FN2(AcdfWalkSample, acdf_walk_drawn, AcdfVector, d, ACDF_F32, pdf) {
-    ACDF_VAR(AcdfWalkSample, drawn);
-    drawn.x = d.x;
-    drawn.y = d.y;
-    drawn.z = d.z;
-    drawn.pdf = pdf;
-    return drawn;
+ACDF_FN2(AcdfWalkSample, acdf_walk_sampled, AcdfVector, d, ACDF_F32, pdf) {
+    ACDF_VAR(AcdfWalkSample, sampled);
+    sampled.x = d.x;
+    sampled.y = d.y;
+    sampled.z = d.z;
+    sampled.pdf = pdf;
+    return sampled;
 }
 
 /* Random numbers: what is left of them, of how many steps. */
@@ -203,7 +205,8 @@ ACDF_FN3(ACDF_U32, acdf_walk_border, ACDF_F32, lower, ACDF_F32, upper, ACDF_U32,
 }
 
 /* Leads numbers to a leaf. */
-ACDF_FN3(AcdfWalkEnd, acdf_walk_draw, ACDF_TABLES, tables, AcdfWalkMixture, given, AcdfWalkNumbers, numbers) {
+ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_leaf, ACDF_TABLES, tables, AcdfWalkMixture, given, AcdfWalkNumbers,
+         numbers) {
     ACDF_LET(ACDF_U32, nodes) = ACDF_WORD(tables, ACDF_WALK_NODES);
     ACDF_VAR(AcdfWalkNumbers, left) = numbers;
     ACDF_VAR(AcdfWalkMixture, mix) = given;

@@ -62,9 +62,9 @@ ACDF_INLINE __m128i acdf_short_curve_values(const AcdfShortCurve* curve) {
                               curve->inner);
 }
 
-/* The segment that a number below `maximum` draws; *low and *width as acdf_short_curve_width tells them. */
-ACDF_INLINE uint32_t acdf_short_curve_drawn(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
-                                            uint32_t* width) {
+/* The segment that a number below `maximum` samples; *low and *width as acdf_short_curve_width tells them. */
+ACDF_INLINE uint32_t acdf_short_curve_sampled(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
+                                              uint32_t* width) {
     const __m128i values = acdf_short_curve_values(curve);
     const uint32_t segment = acdf_first_above(values, number);
     uint16_t bound[9];
@@ -114,7 +114,7 @@ typedef struct AcdfShortCurve {
 } AcdfShortCurve;
 
 ACDF_FN uint64_t acdf_eight_bytes(const uint8_t* at) {
-#ifdef ACDF_ON_GPU /* which has no loads at odd places: two or three words instead of eight bytes */
+#ifdef ACDF_ON_GPU /* which has no loads at odd addresses: two or three words instead of eight bytes */
     const uint32_t* words = (const uint32_t*)(const void*)((uintptr_t)at & ~(uintptr_t)3);
     const uint32_t shift = 8u * (uint32_t)((uintptr_t)at & 3u);
     const uint64_t low = words[0] | (uint64_t)words[1] << 32, high = words[shift ? 2 : 1];
@@ -178,9 +178,9 @@ ACDF_INLINE uint32_t acdf_short_curve_width(const AcdfShortCurve* curve, uint32_
     return acdf_byte_at(curve->cumulative, segment) - *low;
 }
 
-/* The segment that a number below `maximum` draws; *low and *width as acdf_short_curve_width tells them. */
-ACDF_INLINE uint32_t acdf_short_curve_drawn(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
-                                            uint32_t* width) {
+/* The segment that a number below `maximum` samples; *low and *width as acdf_short_curve_width tells them. */
+ACDF_INLINE uint32_t acdf_short_curve_sampled(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
+                                              uint32_t* width) {
     const uint32_t segment = acdf_first_above(curve->cumulative, number, curve->inner);
     *width = acdf_short_curve_width(curve, segment, low);
     return segment;
@@ -197,10 +197,10 @@ ACDF_INLINE uint32_t acdf_short_curve_narrow(const AcdfShortCurve* curve, uint32
 
 #endif
 
-/* Draws one segment, of whatever curve: as acdf_tree_sample does. Returns the distance to its child, 0 where it
+/* Samples one segment, of whatever curve: as acdf_tree_sample does. Returns the distance to its child, 0 where it
  * ends. */
-ACDF_INLINE uint32_t acdf_curve_draw(const uint8_t* tree, uint32_t units, uint32_t at, double* u, AcdfRange* range,
-                                     double* probability) {
+ACDF_INLINE uint32_t acdf_short_curve_sample(const uint8_t* tree, uint32_t units, uint32_t at, double* u,
+                                             AcdfRange* range, double* probability) {
     AcdfShortCurve curve;
     uint32_t segment, low, width;
     double scaled, maximum;
@@ -208,26 +208,27 @@ ACDF_INLINE uint32_t acdf_curve_draw(const uint8_t* tree, uint32_t units, uint32
     maximum = (double)(int32_t)curve.maximum;
     scaled = u[curve.axis] * maximum;
     if (scaled >= maximum) scaled = maximum * (1.0 - 0x1p-53);
-    segment = acdf_short_curve_drawn(&curve, (uint32_t)(int32_t)scaled, &low, &width);
+    segment = acdf_short_curve_sampled(&curve, (uint32_t)(int32_t)scaled, &low, &width);
     u[curve.axis] = (scaled - (double)(int32_t)low) / (double)(int32_t)width;
     *probability *= (double)(int32_t)width / maximum;
     return acdf_short_curve_narrow(&curve, segment, &range[curve.axis]);
 }
 
 /* acdf_tree_sample_on of a tree of `units`; 0: how many is not known. */
-ACDF_INLINE double acdf_tree_draw_on(const uint8_t* tree, uint32_t units, uint32_t at, double* u, AcdfRange* range,
-                                     double probability) {
+ACDF_INLINE double acdf_short_tree_sample_on(const uint8_t* tree, uint32_t units, uint32_t at, double* u,
+                                             AcdfRange* range, double probability) {
     uint32_t link;
     do {
-        link = acdf_curve_draw(tree, units, at, u, range, &probability);
+        link = acdf_short_curve_sample(tree, units, at, u, range, &probability);
         at += link;
     } while (link != 0);
     return acdf_positive(probability);
 }
 
 /* acdf_tree_sample of such a tree. */
-ACDF_INLINE double acdf_tree_draw(const uint8_t* tree, uint32_t units, uint32_t root, double* u, AcdfRange* range) {
-    return acdf_tree_draw_on(tree, units, root, u, range, 1.0);
+ACDF_INLINE double acdf_short_tree_sample(const uint8_t* tree, uint32_t units, uint32_t root, double* u,
+                                          AcdfRange* range) {
+    return acdf_short_tree_sample_on(tree, units, root, u, range, 1.0);
 }
 
 /* Finds one segment, of whatever curve: as acdf_tree_find does. Returns the distance to its child, 0 where it ends.

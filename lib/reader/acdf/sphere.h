@@ -14,8 +14,8 @@ typedef struct AcdfDirectionSample {
     float pdf;          /* sr^-1, finite and > 0 */
 } AcdfDirectionSample;
 
-/* A draw that is returned by a call in two registers. Compilers take it out of memory then, where what was written
- * in pieces of 4 bytes is waited for if more are read at once: so it is written at once. */
+/* A sample that is returned by a call in two registers. Compilers take it out of memory then, where what was
+ * written in pieces of 4 bytes is waited for if more are read at once: so it is written at once. */
 ACDF_INLINE AcdfDirectionSample acdf_returned(const AcdfDirectionSample* sample) {
 #ifdef ACDF_SSE2
     AcdfDirectionSample out;
@@ -64,8 +64,8 @@ ACDF_FN void acdf_sphere_ranges(uint32_t columns, uint32_t rows, AcdfRange range
 
 /* The direction that what is left of the random numbers picks in a cell of probability p, between the heights z0 of
  * its upper and z1 of its lower border. */
-ACDF_FN AcdfDirectionSample acdf_sphere_place_between(uint32_t columns, const AcdfRange range[2], const double u[2],
-                                                      double p, double z0, double z1) {
+ACDF_FN AcdfDirectionSample acdf_sphere_position_between(uint32_t columns, const AcdfRange range[2],
+                                                         const double u[2], double p, double z0, double z1) {
     AcdfDirectionSample out;
     double tx, tz, x, z, sin_theta, sine, cosine, border, kept;
     tx = acdf_tilt_sample(range[0].tilt, u[0]);
@@ -89,15 +89,15 @@ ACDF_FN AcdfDirectionSample acdf_sphere_place_between(uint32_t columns, const Ac
     out.direction[1] = (float)(sin_theta * sine);
     out.direction[2] = (float)z;
     out.pdf = acdf_cell_pdf(p, range[0].high - range[0].low, columns, z0 - z1,
-                            acdf_tilt_density(range[0].tilt, tx) * acdf_tilt_density(range[1].tilt, tz));
+                            acdf_tilt_pdf(range[0].tilt, tx) * acdf_tilt_pdf(range[1].tilt, tz));
     return out;
 }
 
 /* The same of a cell of `rows` rows of the sphere. */
-ACDF_FN AcdfDirectionSample acdf_sphere_place(uint32_t columns, uint32_t rows, const AcdfRange range[2],
-                                              const double u[2], double p) {
-    return acdf_sphere_place_between(columns, range, u, p, acdf_row_z(range[1].low, rows),
-                                     acdf_row_z(range[1].high, rows));
+ACDF_FN AcdfDirectionSample acdf_sphere_position(uint32_t columns, uint32_t rows, const AcdfRange range[2],
+                                                 const double u[2], double p) {
+    return acdf_sphere_position_between(columns, range, u, p, acdf_row_z(range[1].low, rows),
+                                        acdf_row_z(range[1].high, rows));
 }
 
 /* The grid square of a direction, and where on the columns axis it lies. Returns 0 for directions that are NaN or

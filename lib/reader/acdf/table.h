@@ -2,7 +2,7 @@
  * C99, C++17 and CUDA/HIP/SYCL, with the same contract: plain views into a checked file, no allocation, no errors.
  *
  * The first `indexed_count` axes are chosen by the caller: one index each, in [0, resolution), which together name
- * a bin. The others are drawn: a point x with one coordinate a sampled axis, in the units of the axis. Densities
+ * a bin. The others are sampled: a point x with one coordinate a sampled axis, in the units of the axis. Densities
  * are per product of those units, and integrate to 1 within each bin that has any energy.
  *
  * Coordinates are double because an axis may have more steps than a float has values. A sample keeps clear of its
@@ -25,27 +25,27 @@ typedef struct AcdfTable {
     uint32_t axis_count;        /* of both roles, at most ACDF_MAX_AXES */
     uint32_t indexed_count;     /* less than axis_count */
     double total;               /* sum over the bins of the integral over the sampled axes */
-    const AcdfCompany* company; /* null: to be used alone */
+    const AcdfPartner* partner; /* null: to be used alone */
     uint32_t tree_units;        /* of two bytes, that the tree has; 0: not known */
     const AcdfEntries* entries; /* runtime tables; null: trees are walked from their roots */
 } AcdfTable;
 
 /* Where a point falls. */
-typedef struct AcdfTablePlace {
+typedef struct AcdfTablePosition {
     AcdfRange range[ACDF_MAX_AXES]; /* the cell, on each axis */
     double position[ACDF_MAX_AXES]; /* the point, in [0, resolution] on each sampled axis */
-} AcdfTablePlace;
+} AcdfTablePosition;
 
 #define ACDF_DOUBLE_MIN 2.2250738585072014e-308
 #define ACDF_DOUBLE_MAX 1.7976931348623157e308
 
-/* How many axes are drawn: numbers of `u` and `x`. */
+/* How many axes are sampled: numbers of `u` and `x`. */
 ACDF_FN uint32_t acdf_table_sampled_count(const AcdfTable* table) {
     return table->axis_count - table->indexed_count;
 }
 
 /* The bin of index[indexed_count] (null where no axis is indexed); null where an index is out of range or the bin
- * has no energy: nothing can be drawn there. */
+ * has no energy: nothing can be sampled there. */
 ACDF_FN const AcdfBin* acdf_table_bin(const AcdfTable* table, const uint32_t* index) {
     size_t bin = 0;
     uint32_t axis;
@@ -102,14 +102,13 @@ ACDF_FN void acdf_table_whole(const AcdfTable* table, AcdfRange* range) {
 
 /* Density of a place in a cell of probability p: the same for acdf_table_sample and acdf_table_pdf, bit for bit,
  * because both come here with the same cell and the same position. */
-ACDF_FN double acdf_table_density(const AcdfTable* table, double p, const AcdfTablePlace* place) {
+ACDF_FN double acdf_table_cell_pdf(const AcdfTable* table, double p, const AcdfTablePosition* place) {
     uint32_t axis;
     for (axis = table->indexed_count; axis < table->axis_count; ++axis) {
         const AcdfAxis* a = &table->axes[axis];
         const AcdfRange* range = &place->range[axis];
         p *= (double)a->resolution / (fabs(a->high - a->low) * (double)(range->high - range->low));
-        if (range->tilt != 0.0)
-            p *= acdf_tilt_density(range->tilt, acdf_table_fraction(range, place->position[axis]));
+        if (range->tilt != 0.0) p *= acdf_tilt_pdf(range->tilt, acdf_table_fraction(range, place->position[axis]));
     }
     return acdf_clamp(p, ACDF_DOUBLE_MIN, ACDF_DOUBLE_MAX);
 }
@@ -119,7 +118,7 @@ ACDF_INLINE const AcdfEntryBin* acdf_table_entries(const AcdfTable* table, const
     const AcdfEntryBin* entries;
     if (!table->entries) return 0;
     entries = acdf_entry_bin(table->entries, (size_t)(bin - table->bins));
-    return entries->places ? entries : 0;
+    return entries->positions ? entries : 0;
 }
 
 /* acdf_table_sample by the grids of a bin, which has no tilts: where in the cell a point lies is not asked again.
@@ -129,29 +128,29 @@ ACDF_INLINE double acdf_table_entry_sample(const AcdfTable* table, const AcdfEnt
     const uint32_t first = table->indexed_count, count = table->axis_count - first;
     const AcdfEntryCurve* curve;
     double left[ACDF_MAX_AXES], p;
-    AcdfTablePlace place;
+    AcdfTablePosition place;
     uint32_t axis;
     for (axis = first; axis < table->axis_count; ++axis) left[axis] = acdf_unit_interval(u[axis - first]);
     curve = acdf_entry_of_numbers(table->entries, grids, count, left + first);
     acdf_entry_ranges(curve, count, place.range + first);
-    p = acdf_tree_draw_on(table->tree, table->tree_units, curve->at, left, place.range, curve->probability);
+    p = acdf_short_tree_sample_on(table->tree, table->tree_units, curve->at, left, place.range, curve->probability);
     for (axis = first; axis < table->axis_count; ++axis) {
         const double low = (double)place.range[axis].low, high = (double)place.range[axis].high;
         const double border = grids->axes[axis - first].border, position = low + left[axis] * (high - low);
         x[axis - first] =
             acdf_table_coordinate(&table->axes[axis], acdf_clamp(position, low + border, high - border));
     }
-    return acdf_table_density(table, p, &place);
+    return acdf_table_cell_pdf(table, p, &place);
 }
 
-/* Draws a point. index[indexed_count] as in acdf_table_bin; u[sampled count] in [0, 1], clamped, NaN counts as 0.
+/* Samples a point. index[indexed_count] as in acdf_table_bin; u[sampled count] in [0, 1], clamped, NaN counts as 0.
  * Fills x[sampled count], monotone in each u within a segment, and returns the density there, finite and > 0.
- * Returns 0, and leaves x as it is, where there is nothing to draw. */
+ * Returns 0, and leaves x as it is, where there is nothing to sample. */
 ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, const double* u, double* x) {
     const AcdfBin* bin = acdf_table_bin(table, index);
     const uint32_t first = table->indexed_count;
     const AcdfEntryBin* grids;
-    AcdfTablePlace place;
+    AcdfTablePosition place;
     double left[ACDF_MAX_AXES];
     double p;
     uint32_t axis;
@@ -171,7 +170,7 @@ ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, 
             a, acdf_clamp(position, (double)range->low + border, (double)range->high - border));
         place.position[axis] = acdf_table_position(a, x[axis - first]);
     }
-    return acdf_table_density(table, p, &place);
+    return acdf_table_cell_pdf(table, p, &place);
 }
 
 /* Where x[sampled count] lies: its position, and the step of the grid on each sampled axis. Returns 0 for NaN and
@@ -193,7 +192,7 @@ ACDF_INLINE int acdf_table_step(const AcdfTable* table, const double* x, double*
  * sample can fall, for NaN and outside the axes' ranges. A border belongs to the cell of the higher position, the
  * end of an axis to its last cell. */
 ACDF_FN double acdf_table_find(const AcdfTable* table, const uint32_t* index, const double* x,
-                               AcdfTablePlace* place, AcdfStratum* strata) {
+                               AcdfTablePosition* place, AcdfStratum* strata) {
     const AcdfBin* bin = acdf_table_bin(table, index);
     uint32_t step[ACDF_MAX_AXES];
     if (!bin || !acdf_table_step(table, x, place->position, step)) return 0.0;
@@ -206,34 +205,34 @@ ACDF_INLINE double acdf_table_entry_pdf(const AcdfTable* table, const AcdfEntryB
     const uint32_t first = table->indexed_count, count = table->axis_count - first;
     const AcdfEntryCurve* curve;
     uint32_t step[ACDF_MAX_AXES], entry;
-    AcdfTablePlace place;
+    AcdfTablePosition place;
     double p;
     if (!acdf_table_step(table, x, place.position, step)) return 0.0;
-    entry = acdf_entry_of_place(table->entries, grids, count, step + first);
+    entry = acdf_entry_of_position(table->entries, grids, count, step + first);
     if (entry & ACDF_ENTRY_CELL)
         return ((const double*)(const void*)acdf_entry_words(table->entries,
                                                              table->entries->densities))[entry & ~ACDF_ENTRY_CELL];
     curve = acdf_entry_curve(table->entries, entry);
     acdf_entry_ranges(curve, count, place.range + first);
     p = acdf_tree_locate_on(table->tree, table->tree_units, curve->at, step, place.range, curve->probability);
-    return p > 0.0 ? acdf_table_density(table, p, &place) : 0.0;
+    return p > 0.0 ? acdf_table_cell_pdf(table, p, &place) : 0.0;
 }
 
-/* Density with which acdf_table_sample draws x in the bin of `index`; 0 where none falls. */
+/* Density with which acdf_table_sample samples x in the bin of `index`; 0 where none falls. */
 ACDF_FN double acdf_table_pdf(const AcdfTable* table, const uint32_t* index, const double* x) {
     const AcdfBin* bin = acdf_table_bin(table, index);
     const AcdfEntryBin* grids = bin ? acdf_table_entries(table, bin) : 0;
-    AcdfTablePlace place;
+    AcdfTablePosition place;
     double p;
     if (grids) return acdf_table_entry_pdf(table, grids, x);
     p = acdf_table_find(table, index, x, &place, 0);
-    return p > 0.0 ? acdf_table_density(table, p, &place) : 0.0;
+    return p > 0.0 ? acdf_table_cell_pdf(table, p, &place) : 0.0;
 }
 
 /* The random numbers u[sampled count] for which acdf_table_sample returns x. Returns 1, or 0 (and u unset) where
  * the density is 0. */
 ACDF_FN int acdf_table_invert(const AcdfTable* table, const uint32_t* index, const double* x, double* u) {
-    AcdfTablePlace place;
+    AcdfTablePosition place;
     AcdfStratum strata[ACDF_MAX_AXES];
     uint32_t axis;
     for (axis = 0; axis < table->axis_count; ++axis) {

@@ -1,5 +1,5 @@
 /* Runtime tables of table files (acdf/table.h): which cell holds a point, or deep down in which curve of its bin's
- * tree a point or random numbers lie. From there the tree is walked: what is drawn and told is the walk's to the
+ * tree a point or random numbers lie. From there the tree is walked: what is sampled and told is the walk's to the
  * bit. Made once at load (acdf/reader.h); flat words without pointers, which a GPU takes as they lie.
  *
  * Each bin has a grid over the positions of its sampled axes and one over their random numbers. An entry of the
@@ -32,15 +32,15 @@ typedef struct AcdfEntryCurve {
 
 /* An axis of the grids of a bin. */
 typedef struct AcdfEntryAxis {
-    double border;                /* acdf_table_border */
-    uint32_t shift, place_stride; /* bits of positions that are finer than entries; entries to the next one */
-    uint32_t number_steps;        /* entries along random numbers: a power of two */
+    double border;                   /* acdf_table_border */
+    uint32_t shift, position_stride; /* bits of positions that are finer than entries; entries to the next one */
+    uint32_t number_steps;           /* entries along random numbers: a power of two */
     uint32_t number_stride;
 } AcdfEntryAxis;
 
 /* Offsets in words from the start of AcdfEntries. */
 typedef struct AcdfEntryBin {
-    uint32_t places, numbers;          /* u32 each; 0: the tree is walked from its root */
+    uint32_t positions, numbers;       /* u32 each; 0: the tree is walked from its root */
     AcdfEntryAxis axes[ACDF_MAX_AXES]; /* of the sampled ones, from 0 */
 } AcdfEntryBin;
 
@@ -51,7 +51,7 @@ typedef struct AcdfEntries {
     uint32_t curves;      /* AcdfEntryCurve */
     uint32_t curve_words; /* from one to the next */
     uint32_t steps;       /* AcdfEntryStep */
-    uint32_t densities;   /* f64: of each cell, as acdf_table_density tells it */
+    uint32_t densities;   /* f64: of each cell, as acdf_table_cell_pdf tells it */
     uint32_t reserved[10];
 } AcdfEntries;
 ACDF_STATIC_ASSERT(sizeof(AcdfEntries) % 64 == 0); /* arrays are aligned */
@@ -79,12 +79,12 @@ ACDF_INLINE void acdf_entry_ranges(const AcdfEntryCurve* curve, uint32_t count, 
 }
 
 /* The entry of a square of the grid of positions, of `count` sampled axes. */
-ACDF_INLINE uint32_t acdf_entry_of_place(const AcdfEntries* entries, const AcdfEntryBin* bin, uint32_t count,
-                                         const uint32_t* square) {
-    size_t at = bin->places;
+ACDF_INLINE uint32_t acdf_entry_of_position(const AcdfEntries* entries, const AcdfEntryBin* bin, uint32_t count,
+                                            const uint32_t* square) {
+    size_t at = bin->positions;
     uint32_t axis;
     for (axis = 0; axis < count; ++axis)
-        at += (size_t)(square[axis] >> bin->axes[axis].shift) * bin->axes[axis].place_stride;
+        at += (size_t)(square[axis] >> bin->axes[axis].shift) * bin->axes[axis].position_stride;
     return ((const uint32_t*)(const void*)entries)[at];
 }
 

@@ -1,7 +1,7 @@
 /* Runtime tables of boxes that rows share (acdf/blend.h): which tile holds a square, the way to each tile, and what
  * codes stand for. Flat words without pointers, which a GPU takes as they lie.
  *
- * What they tell of a square is what the walk of the splits finds, to the bit. A draw is the walk's but for the
+ * What they tell of a square is what the walk of the splits finds, to the bit. A sample is the walk's but for the
  * rounding of the numbers that are left of it: what the rows give to the two halves of a split is summed in another
  * order, so that a number next to a border may fall to its other side. */
 #ifndef ACDF_TILE_TABLES_H
@@ -120,7 +120,7 @@ ACDF_INLINE double acdf_tile_share_rows(const uint32_t* words, const AcdfTileTab
 }
 
 /* A walk of the splits on the way to a tile, as acdf_blend_sample_rows has it, of random numbers that are told as
- * what x they are of all that the mixture gives. No branch depends on what is drawn but where the way ends. Rows
+ * what x they are of all that the mixture gives. No branch depends on what is sampled but where the way ends. Rows
  * are as many as in all three functions. */
 #ifdef ACDF_SSE2
 typedef struct AcdfTileWalk {
@@ -260,10 +260,10 @@ ACDF_INLINE uint32_t acdf_tile_walk_end(const AcdfTileWalk* walk, const AcdfMixt
 }
 #endif
 
-/* Draws a tile below split `node`: u and *given as acdf_tile_walk_end sets them. */
-ACDF_INLINE uint32_t acdf_tile_draw_rows(const uint32_t* words, const AcdfTileTables* tables,
-                                         const AcdfMixture* mix, const uint8_t* const* row, const int rows,
-                                         uint32_t node, const double* from, double* u, double* given) {
+/* Samples a tile below split `node`: u and *given as acdf_tile_walk_end sets them. */
+ACDF_INLINE uint32_t acdf_tile_sample_rows(const uint32_t* words, const AcdfTileTables* tables,
+                                           const AcdfMixture* mix, const uint8_t* const* row, const int rows,
+                                           uint32_t node, const double* from, double* u, double* given) {
     AcdfTileWalk walk;
     acdf_tile_walk_begin(words, tables, mix, row, rows, node, from, &walk);
     do {
@@ -282,9 +282,9 @@ ACDF_INLINE double acdf_tile_share(const uint32_t* words, const AcdfTileTables* 
         return acdf_tile_share_rows(words, tables, mix, row, mix->count, tile, first);
     }
 }
-ACDF_INLINE uint32_t acdf_tile_draw(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
-                                    const uint8_t* const* row, uint32_t node, const double* from, double* u,
-                                    double* given) {
+ACDF_INLINE uint32_t acdf_tile_sample(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
+                                      const uint8_t* const* row, uint32_t node, const double* from, double* u,
+                                      double* given) {
     int i;
     if (node & ACDF_TILE_FLAG) {
         *given = acdf_mixture_sum(mix);
@@ -293,11 +293,11 @@ ACDF_INLINE uint32_t acdf_tile_draw(const uint32_t* words, const AcdfTileTables*
     }
     switch (mix->count) {
     case 1:
-        return acdf_tile_draw_rows(words, tables, mix, row, 1, node, from, u, given);
+        return acdf_tile_sample_rows(words, tables, mix, row, 1, node, from, u, given);
     case 2:
-        return acdf_tile_draw_rows(words, tables, mix, row, 2, node, from, u, given);
+        return acdf_tile_sample_rows(words, tables, mix, row, 2, node, from, u, given);
     default:
-        return acdf_tile_draw_rows(words, tables, mix, row, 3, node, from, u, given);
+        return acdf_tile_sample_rows(words, tables, mix, row, 3, node, from, u, given);
     }
 }
 

@@ -1,4 +1,4 @@
-/* Curves and trees of curves (SPEC.md §5.4): drawing a cell, and finding the one that holds a point. */
+/* Curves and trees of curves (SPEC.md §5.4): sampling a cell, and finding the one that holds a point. */
 #ifndef ACDF_TREE_H
 #define ACDF_TREE_H
 
@@ -144,10 +144,10 @@ ACDF_FN uint32_t acdf_curve_link(const AcdfCurve* curve, uint32_t i) {
     return curve->links ? acdf_load(curve->links, i, ACDF_CURVE_LINK_CODE(curve->header) - 1) : 0;
 }
 
-/* A product of 64 probabilities may underflow; what can be drawn keeps a positive one. */
+/* A product of 64 probabilities may underflow; what can be sampled keeps a positive one. */
 ACDF_FN double acdf_positive(double probability) { return probability > 0x1p-1000 ? probability : 0x1p-1000; }
 
-/* Draws a segment of a curve, as acdf_tree_sample does on its way. Returns the distance to its child, 0 where it
+/* Samples a segment of a curve, as acdf_tree_sample does on its way. Returns the distance to its child, 0 where it
  * ends. */
 ACDF_FN uint32_t acdf_curve_sample(const uint8_t* tree, uint32_t at, double* u, AcdfRange* range,
                                    double* probability) {
@@ -168,7 +168,7 @@ ACDF_FN uint32_t acdf_curve_sample(const uint8_t* tree, uint32_t at, double* u, 
     return acdf_curve_link(&curve, i);
 }
 
-/* acdf_tree_sample from a curve on that is drawn with a probability. */
+/* acdf_tree_sample from a curve on that is sampled with a probability. */
 ACDF_FN double acdf_tree_sample_on(const uint8_t* tree, uint32_t at, double* u, AcdfRange* range,
                                    double probability) {
     uint32_t link;
@@ -179,7 +179,7 @@ ACDF_FN double acdf_tree_sample_on(const uint8_t* tree, uint32_t at, double* u, 
     return acdf_positive(probability);
 }
 
-/* Draws a cell. In: u[axis] in [0, 1] and range[axis] = the whole axis with tilt 0, for each sampled axis.
+/* Samples a cell. In: u[axis] in [0, 1] and range[axis] = the whole axis with tilt 0, for each sampled axis.
  * Out: u[axis] in [0, 1] is what is left of the random number, uniform within the cell; range[axis] is the
  * cell. Returns the cell's probability, > 0. */
 ACDF_FN double acdf_tree_sample(const uint8_t* tree, uint32_t root, double* u, AcdfRange* range) {
@@ -230,7 +230,7 @@ ACDF_FN double acdf_tilt_sample(double tilt, double u) {
     return tilt == 0.0 ? u : 2.0 * u / (a + sqrt(a * a + 4.0 * tilt * u));
 }
 ACDF_FN double acdf_tilt_cdf(double tilt, double t) { return t + tilt * (t * t - t); }
-ACDF_FN double acdf_tilt_density(double tilt, double t) { return 1.0 + tilt * (2.0 * t - 1.0); }
+ACDF_FN double acdf_tilt_pdf(double tilt, double t) { return 1.0 + tilt * (2.0 * t - 1.0); }
 
 /* The random number in [0, 1] that a cell's stratum has at t of the cell: never more than 1 by rounding. */
 ACDF_FN double acdf_stratum_number(const AcdfStratum* stratum, const AcdfRange* range, double t) {

@@ -41,9 +41,9 @@ public:
     /// Integral of the sampled function over the sphere (luminance times sr): for light selection.
     ACDF_METHOD double total() const noexcept { return data_.total; }
     /// Whether the density is 0 where another sampler is to cover the light: used alone it is biased.
-    ACDF_METHOD bool needs_company() const noexcept { return data_.company != nullptr; }
+    ACDF_METHOD bool requires_mis() const noexcept { return data_.partner != nullptr; }
     /// Of the samples of both, in (0, 1]: how many to draw from this view; 1 where it is to be used alone.
-    ACDF_METHOD float recommended_share() const noexcept { return acdf_company_share(data_.company); }
+    ACDF_METHOD float recommended_light_share() const noexcept { return acdf_partner_share(data_.partner); }
     /// The plain data, for acdf/sample.h in another language or on a GPU.
     ACDF_METHOD const AcdfEnvironment& data() const noexcept { return data_; }
 
@@ -79,16 +79,16 @@ public:
     }
     /// The same for a point of the scene that the file was made for, `position` in the scene's own coordinates:
     /// only light that reaches it is drawn, but for a small share. Outside of the scene's bounds, and of files that
-    /// do not tell places apart, that of the normal alone. Where the scene is another one than it was, sampling
-    /// stays unbiased, and is noisier.
+    /// do not store visibility cells, that of the normal alone. Where the scene is another one than it was,
+    /// sampling stays unbiased, and is noisier.
     ACDF_METHOD AcdfLocalPoint at(const float position[3], const float normal[3]) const noexcept {
         AcdfLocalPoint point;
-        acdf_local_at_place(&data_, position, normal, &point);
+        acdf_local_at_position(&data_, position, normal, &point);
         return point;
     }
-    /// Whether places are told apart.
-    ACDF_METHOD bool has_places() const noexcept { return data_.places.header != nullptr; }
-    /// Whether windows are known that light comes through: they are drawn where a place sees them.
+    /// Whether there are visibility cells.
+    ACDF_METHOD bool has_visibility() const noexcept { return data_.visibility.header != nullptr; }
+    /// Whether windows are known that light comes through: they are drawn where a position sees them.
     ACDF_METHOD bool has_portals() const noexcept { return data_.portals.header != nullptr; }
     ACDF_METHOD DirectionSample sample(const AcdfLocalPoint& point, double u0, double u1) const noexcept {
         return acdf_local_sample_at(&data_, &point, u0, u1);
@@ -104,10 +104,10 @@ public:
         return acdf_local_irradiance(&data_, normal);
     }
     /// Whether densities are 0 where another sampler is to cover the light: used alone they are biased.
-    ACDF_METHOD bool needs_company() const noexcept { return data_.company != nullptr; }
+    ACDF_METHOD bool requires_mis() const noexcept { return data_.partner != nullptr; }
     /// Of the samples of both at a normal, in (0, 1]: how many to draw from this view; 1 where it is to be used
     /// alone.
-    ACDF_METHOD float recommended_share(const float normal[3]) const noexcept {
+    ACDF_METHOD float recommended_light_share(const float normal[3]) const noexcept {
         return acdf_local_recommended_share(&data_, normal);
     }
     /// Whether a normal has a density of its own; else it is served by that of the whole environment.
@@ -191,12 +191,12 @@ public:
     /// Sum over the bins of the integral of the table over its sampled axes.
     ACDF_METHOD double total() const noexcept { return data_.total; }
     /// Whether densities are 0 where another sampler is to cover the table: used alone they are biased.
-    ACDF_METHOD bool needs_company() const noexcept { return data_.company != nullptr; }
+    ACDF_METHOD bool requires_mis() const noexcept { return data_.partner != nullptr; }
     /// Of the samples of both in a bin, in (0, 1]: how many to draw from this view; 1 where it is to be used alone,
     /// or an index is out of range.
-    ACDF_METHOD float recommended_share(const std::uint32_t* index) const noexcept {
+    ACDF_METHOD float recommended_light_share(const std::uint32_t* index) const noexcept {
         const AcdfBin* bin = acdf_table_bin(&data_, index);
-        return bin ? acdf_company_bin_share(data_.company, static_cast<std::uint32_t>(bin - data_.bins)) : 1.0f;
+        return bin ? acdf_partner_bin_share(data_.partner, static_cast<std::uint32_t>(bin - data_.bins)) : 1.0f;
     }
     /// What part of `total` a bin holds: to choose a bin by its energy. 0 where an index is out of range.
     ACDF_METHOD double share(const std::uint32_t* index) const noexcept {

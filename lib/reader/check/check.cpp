@@ -153,18 +153,20 @@ constexpr u32 required_beside_halvings = 1; // the first of them
 
 // Whether a known chunk has a place in files of a kind.
 bool belongs(int known, u32 kind) {
-    if (known == chunk_local || known == chunk_places || known == chunk_portals || known == chunk_sums ||
+    if (known == chunk_local || known == chunk_visibility || known == chunk_portals || known == chunk_sums ||
         known == chunk_grid)
         return kind == ACDF_KIND_LOCAL;
     if (known == chunk_views) return kind == ACDF_KIND_BRDF;
-    if (known == chunk_company) return kind != ACDF_KIND_BRDF;
+    if (known == chunk_partner) return kind != ACDF_KIND_BRDF;
     if (known == chunk_halvings) return kind == ACDF_KIND_ENVIRONMENT;
     if (known == chunk_tiles || known == chunk_rows) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
     return true;
 }
 
 // Whether a reader that does not know a chunk must refuse the file.
-bool is_critical(int known) { return known != chunk_metadata && known != chunk_places && known != chunk_portals; }
+bool is_critical(int known) {
+    return known != chunk_metadata && known != chunk_visibility && known != chunk_portals;
+}
 
 bool is_all_printable(u32 type) {
     return is_printable(type, 0) && is_printable(type, 1) && is_printable(type, 2) && is_printable(type, 3);
@@ -331,8 +333,8 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_tree(payloads.of[chunk_bins], payloads.of[chunk_tree], header.kind, boxes, report, parts);
     if (header.kind == ACDF_KIND_LOCAL && !report.stopped())
         check_local_kind(description, payloads.of[chunk_local], boxes, report, parts);
-    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_places].data && !fast && !report.stopped())
-        check_places(payloads.of[chunk_places], report, parts);
+    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_visibility].data && !fast && !report.stopped())
+        check_visibility(payloads.of[chunk_visibility], report, parts);
     if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_portals].data && !fast && !report.stopped())
         check_portals(payloads.of[chunk_portals], report, parts);
     if (header.kind == ACDF_KIND_BRDF && !report.stopped())
@@ -341,8 +343,8 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_environment(description, payloads.of[chunk_bins], report, parts);
     if (header.kind == ACDF_KIND_TABLE && !report.stopped())
         check_table_kind(description, payloads.of[chunk_bins], report, parts);
-    if (payloads.of[chunk_company].data && belongs(chunk_company, header.kind) && !report.stopped())
-        check_company(payloads.of[chunk_company], header.kind, report, parts);
+    if (payloads.of[chunk_partner].data && belongs(chunk_partner, header.kind) && !report.stopped())
+        check_partner(payloads.of[chunk_partner], header.kind, report, parts);
     return report.verdict();
 }
 

@@ -48,8 +48,8 @@ enum KnownChunk {
     chunk_rows,
     chunk_local,
     chunk_views,
-    chunk_company,
-    chunk_places,
+    chunk_partner,
+    chunk_visibility,
     chunk_portals,
     chunk_sums,
     chunk_grid,
@@ -66,7 +66,7 @@ struct TileBox {
 struct TileBoxes {
     TileBox* of = nullptr;
     bool given = false; ///< there is a TILE, right or wrong
-    bool fast = false;  ///< of the fast shape: roots are no places in TREE
+    bool fast = false;  ///< of the fast shape: roots are no offsets in TREE
     Payload roots;      ///< the part of TILE that tells the roots of tiles
 
     TileBoxes() = default;
@@ -86,7 +86,7 @@ void check_description(const Payload& payload, std::uint32_t kind, Report& repor
 /// META. Sets parts.metadata if it is well-formed.
 void check_metadata(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// TILE and ROWS; needs parts.description. Sets parts.tiles and what belongs to it, and `boxes`, if they are right.
-/// `fast`: there are no ROWS, and roots are no places in TREE (check_fast).
+/// `fast`: there are no ROWS, and roots are no offsets in TREE (check_fast).
 void check_tiles(const Payload& tiles, const Payload& rows, bool fast, Report& report, Parts& parts,
                  TileBoxes& boxes) noexcept;
 /// SUMS and GRID, which come beside TILE; needs what check_tiles sets. Sets parts.fast if they are right.
@@ -104,14 +104,14 @@ void check_environment(const Payload& description, const Payload& bins, Report& 
 /// The same of local environments, and LOCL. Sets parts.local and parts.lights.
 void check_local_kind(const Payload& description, const Payload& local, const TileBoxes& boxes, Report& report,
                       Parts& parts) noexcept;
-/// PLAC of a local environment; needs what check_local_kind sets. Sets parts.places if it is right.
-void check_places(const Payload& payload, Report& report, Parts& parts) noexcept;
-/// PORT of a local environment; needs what check_places sets. Sets parts.portals if it is right.
+/// PLAC of a local environment; needs what check_local_kind sets. Sets parts.visibility if it is right.
+void check_visibility(const Payload& payload, Report& report, Parts& parts) noexcept;
+/// PORT of a local environment; needs what check_visibility sets. Sets parts.portals if it is right.
 void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
 void check_brdf_kind(const Payload& description, const Payload& views, Report& report, Parts& parts) noexcept;
-/// COMP, where there is one; needs parts.description. Sets parts.company.
-void check_company(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
+/// COMP, where there is one; needs parts.description. Sets parts.partner.
+void check_partner(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
 void check_table_kind(const Payload& description, const Payload& bins, Report& report, const Parts& parts) noexcept;
 
 } // namespace acdf

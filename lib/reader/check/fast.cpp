@@ -97,14 +97,14 @@ bool check_grid(const Payload& payload, const TileBoxes& boxes, const Parts& par
 void check_fast(const Payloads& payloads, const TileBoxes& boxes, Report& report, Parts& parts) noexcept {
     const Payload &sums = payloads.of[chunk_sums], &grid = payloads.of[chunk_grid];
     const Payload& either = sums.data ? sums : grid;
-    const bool places = payloads.of[chunk_places].data || payloads.of[chunk_portals].data;
-    if (!sums.data || !grid.data || payloads.of[chunk_rows].data || !payloads.of[chunk_tiles].data || places)
+    const bool visibility = payloads.of[chunk_visibility].data || payloads.of[chunk_portals].data;
+    if (!sums.data || !grid.data || payloads.of[chunk_rows].data || !payloads.of[chunk_tiles].data || visibility)
         report.add(6027, either.at(0), "%s",
                    !sums.data                       ? "there is GRID, but no SUMS"
                    : !grid.data                     ? "there is SUMS, but no GRID"
                    : payloads.of[chunk_rows].data   ? "there is ROWS, too"
                    : !payloads.of[chunk_tiles].data ? "there are no tiles"
-                                                    : "there are places, too");
+                                                    : "there are visibility cells, too");
     if (!parts.tiles || !boxes.of || !sums.data || !grid.data || report.stopped()) return;
     if (parts.tiles->root_count == 0) {
         report.add(6027, payloads.of[chunk_tiles].at(offsetof(AcdfTiles, root_count)), "tiles have no roots");

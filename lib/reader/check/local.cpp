@@ -58,7 +58,7 @@ void check_local_axes(const Payload& payload, Report& report, const Parts& parts
 }
 
 // What is wrong with a light; null if nothing.
-const char* light_fault(const AcdfLight& light, const TileBox& box) {
+const char* bright_tile_fault(const AcdfBrightTile& light, const TileBox& box) {
     double square = 0.0;
     for (float x : light.direction) square += static_cast<double>(x) * static_cast<double>(x);
     if (!(std::fabs(square - 1.0) < 1e-3)) return "direction";
@@ -70,12 +70,12 @@ const char* light_fault(const AcdfLight& light, const TileBox& box) {
                : "box";
 }
 
-void check_lights(const Payload& payload, const TileBoxes& boxes, Report& report, const Parts& parts) {
+void check_bright_tiles(const Payload& payload, const TileBoxes& boxes, Report& report, const Parts& parts) {
     const u32 tiles = boxes.of ? parts.tiles->tile_count : 0;
-    for (u32 i = 0; i < parts.local->light_count && !report.stopped(); ++i) {
-        const AcdfLight& light = parts.lights[i];
-        const char* fault = light.tile < tiles && (i == 0 || light.tile > parts.lights[i - 1].tile)
-                                ? light_fault(light, boxes.of[light.tile])
+    for (u32 i = 0; i < parts.local->bright_tile_count && !report.stopped(); ++i) {
+        const AcdfBrightTile& light = parts.bright_tiles[i];
+        const char* fault = light.tile < tiles && (i == 0 || light.tile > parts.bright_tiles[i - 1].tile)
+                                ? bright_tile_fault(light, boxes.of[light.tile])
                                 : "tile";
         if (fault)
             report.add(7006, payload.at(sizeof(AcdfLocalHeader) + i * sizeof light), "light %u: its %s", i, fault);
@@ -89,7 +89,7 @@ struct Step {
 };
 
 // The splits on the way to the box of a tile; returns how many.
-u32 path_to(const AcdfLight& light, const Parts& parts, Step path[ACDF_MAX_SPLITS_DEEP]) {
+u32 path_to(const AcdfBrightTile& light, const Parts& parts, Step path[ACDF_MAX_SPLITS_DEEP]) {
     u32 count = 0;
     for (u32 node = parts.tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG; !(node & ACDF_TILE_FLAG);) {
         const AcdfSplit& split = parts.splits[node];
@@ -106,7 +106,7 @@ struct DarkBySplits {
     Step path[ACDF_MAX_SPLITS_DEEP];
     u32 steps;
 
-    DarkBySplits(const Parts& of, const AcdfLight& light) : parts(of), steps(path_to(light, of, path)) {}
+    DarkBySplits(const Parts& of, const AcdfBrightTile& light) : parts(of), steps(path_to(light, of, path)) {}
     bool in(u32 row) const {
         const u8* codes = parts.rows + u64{row} * (parts.tiles->tile_count - 1);
         for (u32 s = 0; s < steps; ++s)
@@ -120,7 +120,7 @@ struct DarkBySums {
     const Parts& parts;
     u32 tile;
 
-    DarkBySums(const Parts& of, const AcdfLight& light) : parts(of), tile(light.tile) {}
+    DarkBySums(const Parts& of, const AcdfBrightTile& light) : parts(of), tile(light.tile) {}
     template <class Value>
     static bool has_none(const Value* ends, u32 i) {
         return ends[i] == (i > 0 ? ends[i - 1] : 0);
@@ -133,17 +133,17 @@ struct DarkBySums {
     }
 };
 
-// Light is drawn as a light or in the mixture, but not both.
+// Light is sampled as a light or in the mixture, but not both.
 template <class Dark>
-void check_light_rows(const Payload& payload, Report& report, const Parts& parts) {
+void check_bright_tile_rows(const Payload& payload, Report& report, const Parts& parts) {
     const u32 bins = parts.bins ? parts.description->bin_count : 0;
-    for (u32 i = 0; i < parts.local->light_count && !report.stopped(); ++i) {
-        const Dark dark(parts, parts.lights[i]);
+    for (u32 i = 0; i < parts.local->bright_tile_count && !report.stopped(); ++i) {
+        const Dark dark(parts, parts.bright_tiles[i]);
         for (u32 b = 0; b < bins; ++b) {
             if (parts.bins[b].root >= parts.tiles->row_count || !(parts.bins[b].share > 0.0f)) continue;
             if (dark.in(parts.bins[b].root)) continue;
-            report.add(7007, payload.at(sizeof(AcdfLocalHeader) + i * sizeof(AcdfLight)), "light %u in bin %u", i,
-                       b);
+            report.add(7007, payload.at(sizeof(AcdfLocalHeader) + i * sizeof(AcdfBrightTile)), "light %u in bin %u",
+                       i, b);
             break;
         }
     }
@@ -160,19 +160,19 @@ void check_local_kind(const Payload& description, const Payload& payload, const 
         report.add(7005, description.at(0), "LOCL is missing");
         return;
     }
-    if (payload.size < sizeof *header || header->light_count > ACDF_MAX_LIGHTS ||
-        payload.size != sizeof *header + header->light_count * sizeof(AcdfLight)) {
+    if (payload.size < sizeof *header || header->bright_tile_count > ACDF_MAX_BRIGHT_TILES ||
+        payload.size != sizeof *header + header->bright_tile_count * sizeof(AcdfBrightTile)) {
         report.add(7005, payload.at(0), "LOCL has %llu bytes", static_cast<ull>(payload.size));
         return;
     }
     if (!(header->cosine_share >= 0.0f && header->cosine_share < 1.0f))
         report.add(7005, payload.at(0), "`cosine_share` is %g", static_cast<double>(header->cosine_share));
     parts.local = header;
-    parts.lights = reinterpret_cast<const AcdfLight*>(payload.data + sizeof *header);
-    if (parts.tiles || !boxes.given) check_lights(payload, boxes, report, parts); // else told of TILE
+    parts.bright_tiles = reinterpret_cast<const AcdfBrightTile*>(payload.data + sizeof *header);
+    if (parts.tiles || !boxes.given) check_bright_tiles(payload, boxes, report, parts); // else told of TILE
     if (report.verdict().errors != errors) return;
-    if (parts.rows) check_light_rows<DarkBySplits>(payload, report, parts);
-    if (parts.fast.grid) check_light_rows<DarkBySums>(payload, report, parts);
+    if (parts.rows) check_bright_tile_rows<DarkBySplits>(payload, report, parts);
+    if (parts.fast.grid) check_bright_tile_rows<DarkBySums>(payload, report, parts);
 }
 
 } // namespace acdf

@@ -74,12 +74,13 @@ bool are_sums(const u32* sums, u32 size) {
 } // namespace
 
 void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept {
-    if (!parts.places.header) {
-        // Places that are wrong are told elsewhere.
-        if (report.verdict().errors == 0) report.add(7016, payload.at(0), "there are portals, but no places");
+    if (!parts.visibility.header) {
+        // Visibility that are wrong are told elsewhere.
+        if (report.verdict().errors == 0)
+            report.add(7016, payload.at(0), "there are portals, but no visibility cells");
         return;
     }
-    if (!check_portal_size(payload, parts.places.header->row_count, report)) return;
+    if (!check_portal_size(payload, parts.visibility.header->row_count, report)) return;
     const auto* header = reinterpret_cast<const AcdfPortals*>(payload.data);
     const auto* portals = reinterpret_cast<const AcdfPortal*>(header + 1);
     const auto* maps = reinterpret_cast<const AcdfPortalMap*>(portals + header->portal_count);

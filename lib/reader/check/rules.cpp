@@ -82,13 +82,13 @@ const Rule rules[] = {
      "keys of 1 to 255 bytes, all UTF-8."},
     {5018, error, malformed, "duplicate-key", "No two metadata keys are equal."},
     {5019, error, unsupported, "channels", "`channels` is one of those of §5.1."},
-    {5020, error, malformed, "company",
-     "COMP is as long as its count tells, with a record for each bin or, but for local environments, none; "
+    {5020, error, malformed, "partner",
+     "COMP is as long as its count says, with a record for each bin or, but for local environments, none; "
      "`reserved` is zero, `share` in (0, 1), recommended shares in (0, 1], fluxes finite, not negative, and 0 but "
      "in "
      "local environments."},
-    {5021, error, unsupported, "company-kind",
-     "Kind and heuristic of a company are those of §5.8; that of a table is 4, and no other's."},
+    {5021, error, unsupported, "partner-kind",
+     "Kind and heuristic of an MIS partner are those of §5.8; that of a table is 4, and no other's."},
 
     {6001, error, malformed, "tree-length", "TREE is 1 to 4294967294 units of two bytes long."},
     {6002, error, malformed, "curve-end", "A curve ends inside TREE."},
@@ -113,9 +113,9 @@ const Rule rules[] = {
     {6017, error, malformed, "bin-share", "`share` is finite and not negative."},
     {6018, error, malformed, "curve-count", "TREE of n bytes holds at most n / 4 + 1 curves."},
     {6019, error, malformed, "relative-knots",
-     "If the knots of a curve have one-byte positions, its range begins at the same place on every path to it."},
+     "If the knots of a curve have one-byte positions, its range begins at the same position on every path to it."},
     {6020, error, malformed, "tiles",
-     "TILE is as long as its counts tell: 1 to 32768 tiles, and a root for each of them or none; `reserved` is "
+     "TILE is as long as its counts say: 1 to 32768 tiles, and a root for each of them or none; `reserved` is "
      "zero."},
     {6021, error, malformed, "codebook", "The codebook rises strictly from 0 to 65535."},
     {6022, error, malformed, "splits",
@@ -156,29 +156,33 @@ const Rule rules[] = {
      "A local environment has the axes of an environment, and one or two of normals as in §6.7."},
     {7004, error, malformed, "normal-bins", "A local environment has as many bins as its normals' axes make."},
     {7005, error, malformed, "local-chunk",
-     "A local environment has LOCL, as long as its count of lights tells, at most 64; `cosine_share` is in [0, "
+     "A local environment has LOCL, as long as its count of bright tiles says, at most 64; `cosine_share` is in "
+     "[0, "
      "1)."},
-    {7006, error, malformed, "light",
+    {7006, error, malformed, "bright-tile",
      "A light is a tile, in ascending order, with the tile's box, a unit direction, a radius in (0, 2] and a "
      "positive finite share."},
-    {7007, error, malformed, "light-row",
+    {7007, error, malformed, "bright-tile-row",
      "In the row of a bin of positive share a light's tile has probability 0."},
     {7008, error, malformed, "environment-share", "The share of an environment's bin is 1."},
-    {7009, error, malformed, "places",
-     "PLAC comes with TILE and is as long as its counts tell, with at least one row."},
-    {7010, error, malformed, "place-bounds",
-     "The bounds of places are finite and rise, and the transform is finite."},
-    {7011, error, malformed, "place-splits",
-     "Splits of places stand in preorder, at most 64 on a path, each met once, and lead to rows that are there."},
-    {7012, error, malformed, "place-split",
-     "A split of places is on one of axes 0 to 5, its position finite, its blend finite and not negative."},
-    {7013, error, malformed, "place-columns",
+    {7009, error, malformed, "visibility",
+     "PLAC comes with TILE and is as long as its counts say, with at least one row."},
+    {7010, error, malformed, "visibility-bounds",
+     "The bounds of visibility cells are finite and rise, and the transform is finite."},
+    {7011, error, malformed, "visibility-splits",
+     "Splits of visibility cells stand in preorder, at most 64 on a path, each met once, and lead to rows that are "
+     "there."},
+    {7012, error, malformed, "visibility-split",
+     "A split of visibility cells is on one of axes 0 to 5, its position finite, its blend finite and not "
+     "negative."},
+    {7013, error, malformed, "visibility-columns",
      "The columns of splits of tiles are numbered from 0 in their order, all of them in each set; FFFF where a "
      "split has none."},
-    {7014, error, malformed, "place-odds", "No odds of a place are 0 or 255: no part of the light has none."},
-    {7015, error, malformed, "place-sets", "The set of columns that a row of places names is there."},
+    {7014, error, malformed, "visibility-odds", "No odds of a cell are 0 or 255: no part of the light has none."},
+    {7015, error, malformed, "visibility-sets",
+     "The set of columns that a row of visibility cells names is there."},
     {7016, error, malformed, "portals",
-     "PORT comes with PLAC and is as long as its counts tell: 1 to 8 portals, 1 to as many maps, of 1 to 4096 "
+     "PORT comes with PLAC and is as long as its counts say: 1 to 8 portals, 1 to as many maps, of 1 to 4096 "
      "cells "
      "along each axis, and 1 to 4 pieces along each side."},
     {7017, error, malformed, "portal",
@@ -192,7 +196,7 @@ const Rule rules[] = {
      "A BRDF has the axes of §6.8, cos_theta_h of at most 268435456 steps and the others of at most 65536."},
     {8002, error, malformed, "brdf-bins", "A BRDF has as many bins as the product of its axes of views."},
     {8003, error, malformed, "views",
-     "A BRDF has VIEW, as long as `theta_count` tells, with the counts of the axes; only flag bit 0 may be set, "
+     "A BRDF has VIEW, as long as `theta_count` says, with the counts of the axes; only flag bit 0 may be set, "
      "where `phi_count` is 1, and phi_h begins at 0 if it is, else at -π."},
     {8004, error, malformed, "view-nodes", "The stored views are in [0, 1] and strictly increasing."},
     {8005, error, malformed, "diffuse-share", "`diffuse_share` is in [0, 1)."},

@@ -55,7 +55,7 @@ bool EntryWidthsFinder::add(u32 at, Reached* reached, EntryWidths& out) noexcept
     const Reached above = side;
     CurveSegments segments(curve, above.first, above.last);
     const double of_all = above.number - logarithm(segments.maximum());
-    double places = 0.0, numbers = 0.0, divided = 0.0;
+    double positions = 0.0, numbers = 0.0, divided = 0.0;
     std::size_t cells = 0;
     while (segments.number() < curve.segments) {
         const u32 link = segments.link();
@@ -78,12 +78,12 @@ bool EntryWidthsFinder::add(u32 at, Reached* reached, EntryWidths& out) noexcept
             if (TreeSurvey::ends(header)) out.divide((header & ACDF_CURVE_AXIS_MASK) - first_axis_, by);
             else divided += by / axes_;
         }
-        places += below * side.place;
+        positions += below * side.place;
         numbers += below * side.number;
         cells += below;
     }
     side = above;
-    out.place[axis] += places;
+    out.place[axis] += positions;
     out.number[axis] += numbers;
     for (u32 other = 0; other < axes_; ++other) { // all of them are alike there
         out.divide(other, divided);

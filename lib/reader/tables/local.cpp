@@ -153,7 +153,7 @@ std::size_t facet_words(const AcdfLocal& local) {
 }
 
 // Where normals between three corners see a light: 1 above all their horizons, -1 below all, 0 neither.
-int side_of(const AcdfLight& light, const double (*corner)[3]) {
+int side_of(const AcdfBrightTile& light, const double (*corner)[3]) {
     double least = 1e300, most = -1e300, length = 0.0;
     for (int i = 0; i < 3; ++i) {
         const double* const n = corner[i];
@@ -168,12 +168,12 @@ int side_of(const AcdfLight& light, const double (*corner)[3]) {
     return least >= far ? 1 : most <= -far ? -1 : 0;
 }
 
-// What normals between three corners see of lights.
+// What normals between three corners see of bright tiles.
 void place_lights_of(const AcdfLocal& local, const double (*corner)[3], AcdfFacet& facet) {
-    for (u32 k = 0; k < local.light_count; k += 2) {
-        const u32 end = std::min(k + 2, local.light_count);
+    for (u32 k = 0; k < local.bright_tile_count; k += 2) {
+        const u32 end = std::min(k + 2, local.bright_tile_count);
         int side[2] = {-1, -1};
-        for (u32 i = k; i < end; ++i) side[i - k] = side_of(local.lights[i], corner);
+        for (u32 i = k; i < end; ++i) side[i - k] = side_of(local.bright_tiles[i], corner);
         if (side[0] >= 0 || side[1] >= 0) facet.seen |= 1u << k / 2;
         if (side[0] == 0 || side[1] == 0) {
             facet.others |= 1u << k / 2;
@@ -181,8 +181,8 @@ void place_lights_of(const AcdfLocal& local, const double (*corner)[3], AcdfFace
         }
         for (u32 i = k; i < end; ++i)
             for (int axis = 0; axis < 3 && side[i - k] > 0; ++axis)
-                facet.whole[axis] += static_cast<double>(local.lights[i].share) *
-                                     static_cast<double>(local.lights[i].direction[axis]);
+                facet.whole[axis] += static_cast<double>(local.bright_tiles[i].share) *
+                                     static_cast<double>(local.bright_tiles[i].direction[axis]);
     }
 }
 
@@ -220,8 +220,8 @@ void place_facets(const AcdfLocal& local, AcdfFacet* out) {
             }
 }
 
-void place_lights(const AcdfLocal& local, AcdfLightPair* out) {
-    for (u32 k = 0; k < local.light_count; k += 2) acdf_local_light_pair(&local, k, out++);
+void place_lights(const AcdfLocal& local, AcdfBrightTilePair* out) {
+    for (u32 k = 0; k < local.bright_tile_count; k += 2) acdf_local_bright_tile_pair(&local, k, out++);
 }
 
 // Of the fast shape, in place of the way to a tile: the shifts and counts of its grid.
@@ -302,7 +302,8 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     std::size_t at = sizeof(AcdfLocalTables) / 4;
     TileTablesMaker tiles(local.blend, env.columns, env.rows, !local.fast.grid);
     if (!tiles.make()) return nullptr;
-    const std::size_t lights = whole_lines((std::max(local.light_count, 1u) + 1) / 2 * sizeof(AcdfLightPair) / 4),
+    const std::size_t bright_tiles = whole_lines((std::max(local.bright_tile_count, 1u) + 1) / 2 *
+                                                 sizeof(AcdfBrightTilePair) / 4),
                       facets = facet_words(local);
     const std::size_t group_hearts = group_heart_words(local), group_angles = whole_lines(local.fast.ends);
     const std::size_t groups = group_hearts > 0 ? group_hearts + group_angles : 0;
@@ -310,7 +311,7 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     TileBlocksMaker blocks;
     if (local.fast.grid && !blocks.make(local.blend, env.columns, env.rows)) return nullptr;
     const std::size_t upper = local.fast.grid ? upper_words(local) + blocks.words() : 0;
-    std::size_t words = at + tiles.words() + heights + lights + facets + middles + upper + groups;
+    std::size_t words = at + tiles.words() + heights + bright_tiles + facets + middles + upper + groups;
     if (4 * words > most_bytes) return nullptr;
     PiecesMaker pieces(local, tree_units, most_bytes - 4 * words);
     const bool small = !local.fast.grid && pieces.make();
@@ -326,12 +327,12 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     tables->octahedral = !latlong;
     at = tiles.place(out, at, tables->tiles);
     if (local.fast.grid) place_grids(local, *tables);
-    for (u32 i = 0; i < local.light_count; ++i)
-        reinterpret_cast<AcdfTileRecord*>(out + tables->tiles.tiles)[local.lights[i].tile].light =
+    for (u32 i = 0; i < local.bright_tile_count; ++i)
+        reinterpret_cast<AcdfTileRecord*>(out + tables->tiles.tiles)[local.bright_tiles[i].tile].light =
             static_cast<std::uint16_t>(i + 1);
-    tables->lights = static_cast<u32>(at);
-    place_lights(local, reinterpret_cast<AcdfLightPair*>(out + at));
-    at += lights;
+    tables->bright_tiles = static_cast<u32>(at);
+    place_lights(local, reinterpret_cast<AcdfBrightTilePair*>(out + at));
+    at += bright_tiles;
     if (facets > 0) {
         tables->facets = static_cast<u32>(at);
         place_facets(local, reinterpret_cast<AcdfFacet*>(out + at));

@@ -115,7 +115,7 @@ struct Side {
     double low, high;    ///< random numbers
     double local[2];     ///< at low and high: local azimuth, 1 - |z|, or 1 - 2 u, 2 v - 1
     double margin[2];    ///< of `local`, in which nothing is sure
-    double key[2];       ///< of acdf_direction_place: the lesser, and the greater
+    double key[2];       ///< of acdf_keys_of_direction: the lesser, and the greater
     double beyond;       ///< the first key behind its piece; that of a quarter is the next one's
     double ends[2];      ///< tangents of azimuth or 1 - |z|: the lesser, and the greater; not on the square
 
@@ -124,7 +124,7 @@ struct Side {
     std::uint32_t last_key() const { return static_cast<std::uint32_t>(key[1] < beyond ? key[1] : beyond - 1.0); }
 };
 
-/// A draw stays this angle (radians) inside its piece: four times ACDF_BORDER, for what floats round.
+/// A sample stays this angle (radians) inside its piece: four times ACDF_BORDER, for what floats round.
 constexpr double kSideMargin = 0x1p-20;
 constexpr std::uint32_t kSouthKeys = (1u << ACDF_DIRECTION_BITS) - 1;
 

@@ -17,7 +17,7 @@ using u32 = std::uint32_t;
 
 constexpr u32 kFewestBinCells = 16;        // of a bin whose tree is not walked from its root
 constexpr double kEntriesACell = 8.0;      // of each grid, at most
-constexpr double kNumberEntries = 0x1p16;  // at most: draws wait for memory as long as more of them save
+constexpr double kNumberEntries = 0x1p16;  // at most: samples wait for memory as long as more of them save
 constexpr u32 kMostEntryBits = 12;         // of entries along an axis
 constexpr double kNumberBorder = 0x1p-40;  // of random numbers: what is nearer to one, rounding may carry across
 constexpr u32 kFewestEntryUnits = 1 << 14; // of a tree whose tables need more than a large page
@@ -33,7 +33,7 @@ struct EntrySpan {
 struct ReachedSide {
     double low = 0.0, high = 1.0; ///< random numbers
     u32 first = 0, last = 1;      ///< positions
-    EntrySpan places, numbers;    ///< that lie in it
+    EntrySpan positions, numbers; ///< that lie in it
 };
 
 /// And all of them.
@@ -48,7 +48,8 @@ struct EntryKind {
     u32 AcdfEntryAxis::*stride; ///< entries to the next one
     u32 AcdfEntryBin::*grid;
 };
-constexpr EntryKind kPlaces = {&ReachedSide::places, &AcdfEntryAxis::place_stride, &AcdfEntryBin::places};
+constexpr EntryKind kPositions = {&ReachedSide::positions, &AcdfEntryAxis::position_stride,
+                                  &AcdfEntryBin::positions};
 constexpr EntryKind kNumbers = {&ReachedSide::numbers, &AcdfEntryAxis::number_stride, &AcdfEntryBin::numbers};
 
 class EntriesMaker {
@@ -56,7 +57,7 @@ public:
     EntriesMaker(const AcdfTable& table, u32 bin_count, std::size_t most_bytes, Scratch* scratch)
         : table_(table), bin_count_(bin_count), most_bytes_(most_bytes), first_axis_(table.indexed_count),
           axes_(acdf_table_sampled_count(&table)), widths_(scratch), bins_(scratch), grids_(scratch),
-          curves_(scratch), steps_(scratch), densities_(scratch) {}
+          curves_(scratch), steps_(scratch), pdfs_(scratch) {}
 
     /// False where there can be none.
     bool measure(const TreeSurvey& survey);
@@ -69,14 +70,14 @@ private:
     void lay_out(const EntryWidths& widths, AcdfEntryBin& bin) const;
     /// Of the grids over positions and over random numbers: whether any entry lies in what is reached.
     struct Found {
-        bool places, numbers;
+        bool positions, numbers;
     };
     bool visit(u32 at, Reached& reached, Found found, u32 depth);
     bool add_cell(const Reached& reached);
     bool add_curve(u32 at, const Reached& reached, Found found, u32 depth);
     u32 add_path(u32 depth);
     /// The entries along an axis that lie in its side: whether there are any.
-    bool find_places(u32 axis, ReachedSide& side) const;
+    bool find_positions(u32 axis, ReachedSide& side) const;
     bool find_numbers(u32 axis, ReachedSide& side) const;
     /// Entries of what is reached lead to `entry`: of those along one axis only a span.
     void fill(const EntryKind& kind, const Reached& reached, u32 along, EntrySpan span, u32 entry);
@@ -94,7 +95,7 @@ private:
     Growable<AcdfEntryBin> bins_;
     Growable<u32> grids_, curves_; ///< curves: curve_words() each
     Growable<AcdfEntryStep> steps_;
-    Growable<double> densities_;
+    Growable<double> pdfs_;
     AcdfEntryStep path_[kMostPath];
     u32 path_at_[kMostPath + 1];        ///< where so many of them stand
     const AcdfEntryBin* bin_ = nullptr; ///< that is entered
@@ -105,7 +106,7 @@ Reached EntriesMaker::whole() const {
     Reached out;
     for (u32 axis = 0; axis < table_.axis_count; ++axis) out.side[axis].last = table_.axes[axis].resolution;
     for (u32 axis = 0; axis < axes_; ++axis) {
-        find_places(axis, out.side[first_axis_ + axis]);
+        find_positions(axis, out.side[first_axis_ + axis]);
         find_numbers(axis, out.side[first_axis_ + axis]);
     }
     return out;
@@ -133,18 +134,18 @@ void EntriesMaker::lay_out(const EntryWidths& widths, AcdfEntryBin& bin) const {
     share_out(all_entries, widths.place, most, place);
     std::fill(most, most + axes_, kMostEntryBits);
     share_out(std::min(all_entries, kNumberEntries), widths.number, most, number);
-    u32 places = 1, numbers = 1;
+    u32 positions = 1, numbers = 1;
     for (u32 axis = axes_; axis-- > 0;) {
         AcdfEntryAxis& a = bin.axes[axis];
         a.border = acdf_table_border(&table_.axes[first_axis_ + axis]);
         a.shift = all[axis] - place[axis];
-        a.place_stride = places;
+        a.position_stride = positions;
         a.number_steps = 1u << number[axis];
         a.number_stride = numbers;
-        places *= ((resolution(axis) - 1) >> a.shift) + 1;
+        positions *= ((resolution(axis) - 1) >> a.shift) + 1;
         numbers *= a.number_steps;
     }
-    bin.places = places; // so many of each, until they have room
+    bin.positions = positions; // so many of each, until they have room
     bin.numbers = numbers;
 }
 
@@ -168,11 +169,11 @@ void EntriesMaker::fill(const EntryKind& kind, const Reached& reached, u32 along
     }
 }
 
-bool EntriesMaker::find_places(u32 axis, ReachedSide& side) const {
+bool EntriesMaker::find_positions(u32 axis, ReachedSide& side) const {
     const u32 shift = bin_->axes[axis].shift;
-    side.places.first = static_cast<u32>((std::uint64_t{side.first} + (std::uint64_t{1} << shift) - 1) >> shift);
-    side.places.last = side.last == resolution(axis) ? ((side.last - 1) >> shift) + 1 : side.last >> shift;
-    return side.places.any();
+    side.positions.first = static_cast<u32>((std::uint64_t{side.first} + (std::uint64_t{1} << shift) - 1) >> shift);
+    side.positions.last = side.last == resolution(axis) ? ((side.last - 1) >> shift) + 1 : side.last >> shift;
+    return side.positions.any();
 }
 
 bool EntriesMaker::find_numbers(u32 axis, ReachedSide& side) const {
@@ -216,15 +217,15 @@ bool EntriesMaker::add_curve(u32 at, const Reached& reached, Found found, u32 de
 
 // A cell in which entries lie.
 bool EntriesMaker::add_cell(const Reached& reached) {
-    fill(kPlaces, reached, 0, reached.side[first_axis_].places,
-         static_cast<u32>(densities_.size()) | ACDF_ENTRY_CELL);
-    AcdfTablePlace place = {};
+    fill(kPositions, reached, 0, reached.side[first_axis_].positions,
+         static_cast<u32>(pdfs_.size()) | ACDF_ENTRY_CELL);
+    AcdfTablePosition place = {};
     for (u32 axis = first_axis_; axis < table_.axis_count; ++axis) {
         place.range[axis].low = reached.side[axis].first;
         place.range[axis].high = reached.side[axis].last;
     }
-    densities_.add(reached.probability > 0.0 ? acdf_table_density(&table_, reached.probability, &place) : 0.0);
-    return !densities_.failed();
+    pdfs_.add(reached.probability > 0.0 ? acdf_table_cell_pdf(&table_, reached.probability, &place) : 0.0);
+    return !pdfs_.failed();
 }
 
 // A curve that is reached by so many steps, in what it divides entries lie, and what is below it. Each entry is
@@ -239,7 +240,7 @@ bool EntriesMaker::visit(u32 at, Reached& reached, Found found, u32 depth) {
     const double of_all = reached.probability;
     CurveSegments segments(curve, above.first, above.last);
     const double maximum = segments.maximum(), width = above.high - above.low;
-    EntrySpan places = above.places, numbers = above.numbers; // that are left
+    EntrySpan positions = above.positions, numbers = above.numbers; // that are left
     const auto fill_up_to = [&](const EntryKind& kind, EntrySpan& left, const EntrySpan& below) {
         fill(kind, reached, axis, {left.first, below.first}, number);
         left.first = below.last;
@@ -256,17 +257,17 @@ bool EntriesMaker::visit(u32 at, Reached& reached, Found found, u32 depth) {
         side.first = segment.first;
         side.last = segment.last;
         const bool divided = link > 0 && part > 0;
-        const Found below = {found.places && find_places(axis, side),
+        const Found below = {found.positions && find_positions(axis, side),
                              found.numbers && divided && find_numbers(axis, side)};
-        if (!below.places && !below.numbers) continue;
-        if (below.places) fill_up_to(kPlaces, places, side.places);
+        if (!below.positions && !below.numbers) continue;
+        if (below.positions) fill_up_to(kPositions, positions, side.positions);
         if (below.numbers) fill_up_to(kNumbers, numbers, side.numbers);
         reached.probability = part > 0 ? acdf_positive(of_all * (part / maximum)) : 0.0;
         path_[depth] = {static_cast<std::uint16_t>(maximum), static_cast<std::uint16_t>(segment.from),
                         static_cast<std::uint16_t>(part), static_cast<std::uint16_t>(axis)};
         all = divided ? visit(at + link, reached, below, depth + 1) : add_cell(reached);
     }
-    if (found.places) fill_up_to(kPlaces, places, {places.last, places.last});
+    if (found.positions) fill_up_to(kPositions, positions, {positions.last, positions.last});
     if (found.numbers) fill_up_to(kNumbers, numbers, {numbers.last, numbers.last});
     side = above;
     reached.probability = of_all;
@@ -293,19 +294,18 @@ bool EntriesMaker::make() {
     entries_a_cell_ = kEntriesACell;
     while (about(entries_a_cell_) > most) entries_a_cell_ /= 2.0;
     const std::size_t some = cells_ / 4; // curves, usually
-    if (!curves_.reserve(some * curve_words()) || !steps_.reserve(2 * some) || !densities_.reserve(some))
-        return false;
+    if (!curves_.reserve(some * curve_words()) || !steps_.reserve(2 * some) || !pdfs_.reserve(some)) return false;
     if (!bins_.add(bin_count_, AcdfEntryBin{}) || !grids_.add(16, 0)) return false; // so that none begins at 0
     for (u32 bin = 0; bin < bin_count_; ++bin) {
         if (widths_[bin].cells < kFewestBinCells) continue;
         bin_ = &bins_[bin];
         lay_out(widths_[bin], bins_[bin]);
-        const u32 places = bin_->places, numbers = bin_->numbers;
-        bins_[bin].places = static_cast<u32>(grids_.size());
-        bins_[bin].numbers = bin_->places + places;
+        const u32 positions = bin_->positions, numbers = bin_->numbers;
+        bins_[bin].positions = static_cast<u32>(grids_.size());
+        bins_[bin].numbers = bin_->positions + positions;
         Reached all = whole();
-        if (!grids_.add(std::size_t{places} + numbers, 0) || !visit(table_.bins[bin].root, all, {true, true}, 0) ||
-            4 * words() > most_bytes_)
+        if (!grids_.add(std::size_t{positions} + numbers, 0) ||
+            !visit(table_.bins[bin].root, all, {true, true}, 0) || 4 * words() > most_bytes_)
             return false;
     }
     return true;
@@ -313,7 +313,7 @@ bool EntriesMaker::make() {
 
 std::size_t EntriesMaker::words() const {
     return sizeof(AcdfEntries) / 4 + whole_lines(bins_.bytes() / 4) + whole_lines(curves_.size()) +
-           whole_lines(steps_.bytes() / 4) + whole_lines(densities_.bytes() / 4) + whole_lines(grids_.size());
+           whole_lines(steps_.bytes() / 4) + whole_lines(pdfs_.bytes() / 4) + whole_lines(grids_.size());
 }
 
 AcdfEntries* EntriesMaker::assemble(const AcdfAllocator& allocator, AcdfBlock& block) const {
@@ -327,12 +327,12 @@ AcdfEntries* EntriesMaker::assemble(const AcdfAllocator& allocator, AcdfBlock& b
     out->curves = copy_lines(curves_, tables, at);
     out->curve_words = static_cast<u32>(curve_words());
     out->steps = copy_lines(steps_, tables, at);
-    out->densities = copy_lines(densities_, tables, at);
+    out->densities = copy_lines(pdfs_, tables, at);
     const u32 grids = copy_lines(grids_, tables, at);
     auto* const bins = reinterpret_cast<AcdfEntryBin*>(tables + out->bins);
     for (u32 bin = 0; bin < bin_count_; ++bin)
-        if (bins[bin].places > 0) {
-            bins[bin].places += grids;
+        if (bins[bin].positions > 0) {
+            bins[bin].positions += grids;
             bins[bin].numbers += grids;
         }
     return out;

@@ -15,7 +15,7 @@ namespace {
 
 using u32 = std::uint32_t;
 
-// What a file draws from, if it is one that can be walked.
+// What a file samples from, if it is one that can be walked.
 AcdfLocal local_of(const File& file) {
     AcdfLocal local = {};
     if (file.kind() == ACDF_KIND_LOCAL) return file.local().data();
@@ -182,7 +182,7 @@ u32 WalkMaker::splits(u32 split, const Cell& box) {
         return at;
     }
     const u32 tile = split & ~ACDF_TILE_FLAG, root = blend.roots ? blend.roots[tile] : ACDF_NO_ROOT;
-    const u32 light = acdf_local_light_of(&local_, tile);
+    const u32 light = acdf_local_bright_tile_of(&local_, tile);
     const u32 link = root == ACDF_NO_ROOT ? leaf(box, light) : tree(blend.tree, root, box, light);
     if (light != 0 && light_links_.size() >= light) light_links_[light - 1] = link;
     return link;
@@ -194,7 +194,7 @@ float WalkMaker::unit() const {
     if (!local_.blend.tiles) return 1.0f;
     float most = 0.0f;
     for (u32 i = 0; i < file_.description().bin_count; ++i) most = std::max(most, local_.bins[i].share);
-    for (u32 i = 0; i < local_.light_count; ++i) most = std::max(most, local_.lights[i].share);
+    for (u32 i = 0; i < local_.bright_tile_count; ++i) most = std::max(most, local_.bright_tiles[i].share);
     return most > 0.0f ? static_cast<float>(std::ldexp(1.0, -std::max(std::ilogb(most), -126))) : 1.0f;
 }
 
@@ -206,10 +206,10 @@ bool WalkMaker::bins() {
     if (trees && !links) return false;
     for (u32 i = 0; i < count && !failed_; ++i) {
         const AcdfBin& bin = local_.bins[i];
-        const bool drawn = bin.root != ACDF_NO_ROOT && (bin.share > 0.0f || brdf());
-        if (trees && drawn && tree_links_[bin.root] == ACDF_WALK_NONE) // several may have the same
+        const bool sampled = bin.root != ACDF_NO_ROOT && (bin.share > 0.0f || brdf());
+        if (trees && sampled && tree_links_[bin.root] == ACDF_WALK_NONE) // several may have the same
             tree_links_[bin.root] = tree(environment_.tree, bin.root, cells_.whole(), 0);
-        bins_.add(trees && drawn ? tree_links_[bin.root] : bin.root);
+        bins_.add(trees && sampled ? tree_links_[bin.root] : bin.root);
         bins_.add(acdf_float_bits(bin.share * scale));
     }
     return !(failed_ || bins_.failed());
@@ -233,11 +233,11 @@ bool WalkMaker::views() {
 bool WalkMaker::make() {
     parts_.add(WalkLeaf{0, 0.0f, {}}); // what is dark
     if (!cells_.remember(most_leaves_)) return false;
-    if (local_.light_count > 0 && !light_links_.add(local_.light_count, ACDF_WALK_LEAF)) return false;
+    if (local_.bright_tile_count > 0 && !light_links_.add(local_.bright_tile_count, ACDF_WALK_LEAF)) return false;
     if (!brdf()) root_ = environment();
     if (local_.fast.grid) {
         mixture_ = ACDF_WALK_ON_GRIDS;
-        for (u32 i = 0; i < local_.light_count; ++i) light_links_[i] = local_.lights[i].tile;
+        for (u32 i = 0; i < local_.bright_tile_count; ++i) light_links_[i] = local_.bright_tiles[i].tile;
         failed_ = !tiles_.make(local_) || failed_;
     } else if (local_.blend.tiles && !failed_) mixture_ = splits(acdf_blend_root(&local_.blend), cells_.whole());
     if (failed_ || (brdf() && !views())) return false;
@@ -248,10 +248,10 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     const AcdfTiles* const tiles = local_.blend.tiles;
     const bool coded = tiles && !local_.fast.grid;
     const std::size_t stride = coded ? tiles->tile_count - 1 : 0, rows = coded ? stride * tiles->row_count : 0;
-    const std::size_t codes = coded ? 512 : 0, lights = 8 * std::size_t{local_.light_count};
+    const std::size_t codes = coded ? 512 : 0, bright_tiles = 8 * std::size_t{local_.bright_tile_count};
     const std::size_t words = ACDF_WALK_HEADER_WORDS +
                               (parts_.nodes.bytes() + parts_.leaves.bytes() + bins_.bytes() + views_.bytes()) / 4 +
-                              codes + lights + rows / 4 + 1 + tiles_.words();
+                              codes + bright_tiles + rows / 4 + 1 + tiles_.words();
     if (rows > 0xFFFFFFFFu || words > 0x3FFFFFFFu) return false;
     block = take_block({}, 4 * words);
     if (!block.data) return false;
@@ -273,7 +273,7 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     out[ACDF_WALK_ROWS] = local_.rows;
     out[ACDF_WALK_BIN_COUNT] = brdf() ? 0 : static_cast<u32>(bins_.size() / 2);
     out[ACDF_WALK_STRIDE] = static_cast<u32>(stride);
-    out[ACDF_WALK_LIGHT_COUNT] = local_.light_count;
+    out[ACDF_WALK_BRIGHT_TILE_COUNT] = local_.bright_tile_count;
     out[ACDF_WALK_COSINE] = float_bits(local_.cosine_share);
     out[ACDF_WALK_FAST] = local_.fast.grid != nullptr;
     if (brdf()) {
@@ -291,9 +291,9 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
         out[at++] = float_bits(tiles->codebook[i] / 65535.0);
         out[at++] = float_bits((65535.0 - tiles->codebook[i]) / 65535.0);
     }
-    if (lights > 0) out[ACDF_WALK_LIGHTS] = static_cast<u32>(at);
-    for (u32 i = 0; i < local_.light_count; ++i) {
-        const AcdfLight& light = local_.lights[i];
+    if (bright_tiles > 0) out[ACDF_WALK_BRIGHT_TILES] = static_cast<u32>(at);
+    for (u32 i = 0; i < local_.bright_tile_count; ++i) {
+        const AcdfBrightTile& light = local_.bright_tiles[i];
         for (int k = 0; k < 3; ++k) out[at + static_cast<std::size_t>(k)] = acdf_float_bits(light.direction[k]);
         out[at + 3] = acdf_float_bits(light.radius);
         out[at + 4] = acdf_float_bits(light.share * scale);

@@ -27,12 +27,12 @@ std::size_t inner_bytes(const AcdfLocal& local) {
 void WalkTiles::add(const AcdfLocal& local, u32 tile) noexcept {
     AcdfRange box[2];
     acdf_sphere_ranges(local.environment.columns, local.environment.rows, box);
-    const AcdfFastGrid grid = acdf_local_fast_drawn(&local, tile, box);
+    const AcdfFastGrid grid = acdf_local_fast_sampled(&local, tile, box);
     Record record;
     record.lows = box[0].low | box[1].low << 16;
     record.sides = (box[0].high - box[0].low - 1) | (box[1].high - box[1].low - 1) << 16;
     record.ends = static_cast<u32>(grid.ends - local.fast.grid);
-    record.rest = grid.shift[0] | grid.shift[1] << 8 | acdf_local_light_of(&local, tile) << 16;
+    record.rest = grid.shift[0] | grid.shift[1] << 8 | acdf_local_bright_tile_of(&local, tile) << 16;
     records_.add(record);
     grid_bytes_ =
         std::max(grid_bytes_, std::size_t{record.ends} + grid.count[1] * (std::size_t{grid.count[0]} + 1));

@@ -1,5 +1,5 @@
-// Draws from cuts (acdf/cut_sample.h) over vectors, operation by operation: the way to a part and its lights here,
-// tiles and directions as LocalWavefront draws them. Internal linkage: see local_kernel.h.
+// Draws from cuts (acdf/cut_sample.h) over vectors, operation by operation: the way to a part and its bright tiles
+// here, tiles and directions as LocalWavefront draws them. Internal linkage: see local_kernel.h.
 #pragma once
 
 #include "waves/alone.h"
@@ -24,7 +24,7 @@ struct CutWalks : Walks {
 
 // ---- parts -----------------------------------------------------------------------------------------------------
 
-/* Two doubles of each lane's element of an array, from a place in it on. */
+/* Two doubles of each lane's element of an array, from a position in it on. */
 template <class T>
 ACDF_LANE void pairs_of(const T* array, Integer number, std::size_t place, Vector out[2]) {
     const double* from[ACDF_WIDTH];
@@ -32,7 +32,7 @@ ACDF_LANE void pairs_of(const T* array, Integer number, std::size_t place, Vecto
     gather_pairs(from, out);
 }
 
-/* acdf_cut_draw of some lanes. */
+/* acdf_cut_choose_part of some lanes. */
 ACDF_LANE void find_parts(const AcdfCut& cut, const double (*given)[2], std::size_t count, DrawnParts* drawn) {
     double u[ACDF_CUT_WAVE][2];
     int guess[ACDF_CUT_WAVE];
@@ -42,7 +42,7 @@ ACDF_LANE void find_parts(const AcdfCut& cut, const double (*given)[2], std::siz
         acdf_cut_part_ahead(&cut, guess[i]);
     }
     for (std::size_t i = 0; i < count; ++i) {
-        drawn->part[i] = acdf_cut_draw_guessed(&cut, guess[i], u[i]) - cut.part;
+        drawn->part[i] = acdf_cut_sample_guessed(&cut, guess[i], u[i]) - cut.part;
         for (int axis = 0; axis < 2; ++axis) drawn->u[axis][i] = u[i][axis];
     }
     for (std::size_t i = count; i % ACDF_WIDTH != 0; ++i) {
@@ -51,24 +51,25 @@ ACDF_LANE void find_parts(const AcdfCut& cut, const double (*given)[2], std::siz
     }
 }
 
-// ---- lights and mixtures ---------------------------------------------------------------------------------------
+// ---- bright tiles and mixtures
+// ---------------------------------------------------------------------------------------
 
-/* acdf_cut_draw_light of the lanes of a mask, into cells. */
+/* acdf_cut_sample_bright_tile of the lanes of a mask, into cells. */
 ACDF_LANE void draw_cut_lights(const AcdfLocal& local, const AcdfCut& cut, const DrawnParts& drawn, std::size_t at,
                                unsigned mask, Cells* cells) {
     for (; mask; mask &= mask - 1) {
         const std::size_t lane = at + acdf_lowest_bit(mask), to = cells->count++;
         double u[2] = {drawn.u[0][lane], drawn.u[1][lane]};
         AcdfRange range[2];
-        cells->tile[to] =
-            acdf_cut_draw_light(&local, &cut, &cut.part[drawn.part[lane]], u, range, &cells->probability[to]);
+        cells->tile[to] = acdf_cut_sample_bright_tile(&local, &cut, &cut.part[drawn.part[lane]], u, range,
+                                                      &cells->probability[to]);
         for (int axis = 0; axis < 2; ++axis) cells->u[axis][to] = u[axis];
         cells->lane[to] = (long long)lane;
     }
 }
 
-/* acdf_cut_draws_light, and what draws from a part's mixture begins its walk. Returns the lanes that neither does:
- * those of mixtures without weight. */
+/* acdf_cut_samples_bright_tile, and what draws from a part's mixture begins its walk. Returns the lanes that
+ * neither does: those of mixtures without weight. */
 ACDF_LANE unsigned enter_parts(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
                                const DrawnParts& drawn, std::size_t at, unsigned there, CutWalks* walks,
                                Cells* cells) {
@@ -76,17 +77,17 @@ ACDF_LANE unsigned enter_parts(const AcdfLocal& local, const AcdfLocalPoint& poi
     Vector rows[2], last[2], sums[2], rest[2]; /* pairs of fields; some are of no interest */
     pairs_of(cut.part, part, offsetof(AcdfCutPart, weight), rows);
     pairs_of(cut.part, part, offsetof(AcdfCutPart, weight) + 16, last);
-    pairs_of(cut.part, part, offsetof(AcdfCutPart, lights), sums);
+    pairs_of(cut.part, part, offsetof(AcdfCutPart, bright_tiles), sums);
     pairs_of(cut.part, part, offsetof(AcdfCutPart, probability), rest);
-    static_assert(offsetof(AcdfCutPart, sum) == offsetof(AcdfCutPart, lights) + 8 &&
+    static_assert(offsetof(AcdfCutPart, sum) == offsetof(AcdfCutPart, bright_tiles) + 8 &&
                   offsetof(AcdfCutPart, node) == offsetof(AcdfCutPart, probability) + 8 &&
                   offsetof(AcdfCutPart, entry) == offsetof(AcdfCutPart, node) + 2);
-    const Vector u[2] = {loaded(&drawn.u[0][at]), loaded(&drawn.u[1][at])}, lights = sums[0], sum = sums[1];
+    const Vector u[2] = {loaded(&drawn.u[0][at]), loaded(&drawn.u[1][at])}, bright_tiles = sums[0], sum = sums[1];
     const Vector of_lights = u[0] * sum, mixture = (rows[0] + rows[1]) + last[0];
-    const Mask lit =
-        both(less(all(0.0), lights), either(less(of_lights, lights), without(all_lanes(), less(lights, sum))));
+    const Mask lit = both(less(all(0.0), bright_tiles),
+                          either(less(of_lights, bright_tiles), without(all_lanes(), less(bright_tiles, sum))));
     const unsigned light = lanes(lit) & there, mixed = lanes(less(all(0.0), mixture)) & (there ^ light);
-    const Vector own = unit_interval((of_lights - lights) / (sum - lights));
+    const Vector own = unit_interval((of_lights - bright_tiles) / (sum - bright_tiles));
     const std::size_t to = walks->count;
     for (int i = 0; i < kRows; ++i)
         store_packed(&walks->weight[i][to], i == 0 ? rows[0] : i == 1 ? rows[1] : last[0], mixed);

@@ -27,7 +27,7 @@ ACDF_LANE void draw_cut_block(const AcdfLocal& local, const AcdfLocalPoint& poin
     for (std::size_t i = 0; i < count; ++i) {
         AcdfFastShare share;
         double left[2];
-        d.tile[i] = (std::int32_t)acdf_fast_cut_draw(&local, &point, &cut, u[i], left, &share);
+        d.tile[i] = (std::int32_t)acdf_fast_cut_choose_part(&local, &point, &cut, u[i], left, &share);
         ACDF_PREFETCH(acdf_local_tile(local.tables, (std::uint32_t)d.tile[i]));
         for (int axis = 0; axis < 2; ++axis) c.u[axis][i] = left[axis];
         c.of[i] = share.of;

@@ -19,7 +19,7 @@ struct FastSquares {
 
 /// The same where rows are mixed.
 struct FastFinds : FastSquares, FastPointLanes {
-    std::uint64_t lit = 0; // lanes whose tiles are lights
+    std::uint64_t lit = 0; // lanes whose tiles are bright tiles
 };
 
 /* acdf_tile_block_at of all squares: each level for all of them before the next. Returns the lanes that are told a
@@ -105,8 +105,8 @@ ACDF_LANE void load_ends(const FastCells& c, std::size_t at, Ints ends[2]) {
     ends[1] = two_bytes_of([&](std::size_t i) { return ends_at(c.list[at + i], (std::uint32_t)line[i]); });
 }
 
-/* acdf_local_fast_find of a vector but for what the cell has of its tile. Its lanes whose tiles are lights are
- * told. */
+/* acdf_local_fast_find of a vector but for what the cell has of its tile. Its lanes whose tiles are bright tiles
+ * are told. */
 ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
     Ints ends[kRows], around[kRows]; // of groups, and of tiles in theirs
     const std::int32_t* const tiles = f->tile + at;
@@ -136,10 +136,10 @@ ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
 ACDF_LANE void weigh_light(const AcdfLocal& local, std::size_t i, FastFinds* f) {
     const std::uint32_t k = f->cells.tile[i]->light - 1u;
     AcdfLocalPoint point;
-    for (int axis = 0; axis < 3; ++axis) point.normal[axis] = f->lights.normal[axis][i];
-    point.length = f->lights.length[i];
+    for (int axis = 0; axis < 3; ++axis) point.normal[axis] = f->bright_tiles.normal[axis][i];
+    point.length = f->bright_tiles.length[i];
     f->cells.of[i] = acdf_tabled_weight(&local, &point, k);
-    f->cells.all[i] = f->lights.sum[i] * ACDF_FAST_STEPS;
+    f->cells.all[i] = f->bright_tiles.sum[i] * ACDF_FAST_STEPS;
 }
 
 /* The densities of lanes whose cells are known. */

@@ -19,9 +19,9 @@ namespace {
 /// Draws of a block.
 struct FastDraws : FastPointLanes {
     FastCells cells;
-    std::uint64_t lit, mixed;                   // lanes that draw lights, and those that draw from the mixture
-    alignas(64) double x[kRoom], before[kRoom]; // of the mixture, or of lights
-    alignas(64) double step[kRoom];             // AcdfLocalPoint::step
+    std::uint64_t lit, mixed; // lanes that draw bright tiles, and those that draw from the mixture
+    alignas(64) double x[kRoom], before[kRoom];                    // of the mixture, or of bright tiles
+    alignas(64) double step[kRoom];                                // AcdfLocalPoint::step
     alignas(64) long long upper[kRows][kRoom], is_lit[kRoom];      // is_lit: all ones, or 0
     alignas(64) std::int32_t at[kRoom], below[kRoom], mass[kRoom]; // at: x or what is next; the others of tiles
     alignas(64) std::int32_t end[kRows][kRoom], ends[2][kRoom];    // of groups, of cells; as they lie
@@ -39,13 +39,13 @@ ACDF_LANE void keep_draws(const FastPoints<true>& p, std::size_t at, FastDraws* 
     for (int i = 0; i < kRows; ++i) stored(&d->upper[i][at], p.upper[i]);
 }
 
-/* Begins the lanes of a vector by their numbers: where they draw lights, and else what they look for. */
+/* Begins the lanes of a vector by their numbers: where they draw bright tiles, and else what they look for. */
 ACDF_LANE void begin_draws(const Vector u[2], std::size_t at, FastDraws* d) {
-    const Vector sum = loaded(&d->lights.sum[at]), lights = loaded(&d->lights.lights[at]);
-    const Vector x = u[0] * sum, of_mixture = (x - lights) * loaded(&d->step[at]);
+    const Vector sum = loaded(&d->bright_tiles.sum[at]), bright_tiles = loaded(&d->bright_tiles.bright_tiles[at]);
+    const Vector x = u[0] * sum, of_mixture = (x - bright_tiles) * loaded(&d->step[at]);
     const Vector most = 32767.0 * loaded(&d->whole[at]) * (1.0 - 0x1p-53);
     const Vector mixed = select(of_mixture < most, of_mixture, most);
-    const Integer is_lit = x < lights;
+    const Integer is_lit = x < bright_tiles;
     for (int i = 0; i < kRows; ++i) stored(&d->end[i][at], Ints{});
     stored(&d->number[at], Ints{});
     stored(&d->cells.of[at], all(0.0));
@@ -61,7 +61,8 @@ ACDF_LANE void begin_draws(const Vector u[2], std::size_t at, FastDraws* d) {
     d->lit |= (std::uint64_t)bits(is_lit) << at;
 }
 
-/* acdf_local_fast_light of the lanes that draw lights. Returns those that it does not tell: next to borders. */
+/* acdf_local_fast_bright_tile of the lanes that draw bright tiles. Returns those that it does not tell: next to
+ * borders. */
 template <class At>
 ACDF_LANE std::uint64_t draw_lights(const AcdfLocal& local, const At& at, FastDraws* d) {
     std::uint64_t lost = 0;
@@ -75,7 +76,7 @@ ACDF_LANE std::uint64_t draw_lights(const AcdfLocal& local, const At& at, FastDr
         stored(weight, draws.weight);
         stored(before, draws.before);
         for (int i = 0; i < ACDF_WIDTH; ++i) {
-            const std::uint32_t tile = local.lights[number[i]].tile;
+            const std::uint32_t tile = local.bright_tiles[number[i]].tile;
             ACDF_PREFETCH(acdf_local_tile(local.tables, tile));
             d->tile[lane[i]] = (std::int32_t)tile;
             d->cells.of[lane[i]] = weight[i];
@@ -129,7 +130,7 @@ ACDF_LANE void search_tiles(const AcdfLocal& local, FastDraws* d) {
     }
 }
 
-/* acdf_fast_draw_tile of all lanes; of those that draw a light it is told before. */
+/* acdf_fast_sample_tile of all lanes; of those that draw a light it is told before. */
 ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* d) {
     alignas(64) double y[kRoom];
     search_groups(d);
@@ -163,7 +164,7 @@ ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* 
 
 // ---- cells -----------------------------------------------------------------------------------------------------
 
-/* acdf_fast_draw_cell of all lanes, but for what they share with densities. */
+/* acdf_fast_sample_cell of all lanes, but for what they share with densities. */
 ACDF_LANE void draw_cells(const AcdfLocal& local, std::size_t count, FastDraws* d) {
     FastCells& c = d->cells;
     alignas(64) double z[2][kRoom];
@@ -197,7 +198,7 @@ ACDF_LANE void draw_cells(const AcdfLocal& local, std::size_t count, FastDraws* 
 
 // ---- directions ------------------------------------------------------------------------------------------------
 
-/* Half of some directions up to where floats go on; densities as acdf_local_fast_density has them. */
+/* Half of some directions up to where floats go on; densities as acdf_local_fast_cell_pdf has them. */
 ACDF_LANE Vector begin_directions(const AcdfLocal& local, const FastDraws& d, std::size_t at, int half,
                                   Drawn* out) {
     const FastCells& c = d.cells;
@@ -231,7 +232,7 @@ ACDF_LANE void end_draws(const AcdfLocal& local, FastDraws* d, std::uint64_t los
         AcdfDirectionSample last[kLanes];
         for (int half = 0; half < 2; ++half)
             pdf[half] = begin_directions(local, *d, first + ACDF_WIDTH * (std::size_t)half, half, &drawn);
-        const std::uint32_t refused = drawn_directions(local.tables->octahedral != 0, drawn, direction);
+        const std::uint32_t refused = sampled_directions(local.tables->octahedral != 0, drawn, direction);
         store_samples(direction, to_floats((Doubles)pdf[0], (Doubles)pdf[1]), more < kLanes ? last : out + first);
         if (more < kLanes) std::memcpy(out + first, last, more * sizeof *out);
         lost |= (std::uint64_t)refused << first;

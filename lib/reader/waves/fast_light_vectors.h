@@ -1,13 +1,13 @@
-// Lights that lanes draw in files of the fast shape: acdf_local_fast_light over vectors of such lanes, which are
-// packed behind each other, since few draws fall into lights. Internal linkage: see local_kernel.h.
+// Lights that lanes draw in files of the fast shape: acdf_local_fast_bright_tile over vectors of such lanes, which
+// are packed behind each other, since few draws fall into bright tiles. Internal linkage: see local_kernel.h.
 #pragma once
 
 #include "waves/fast_vectors.h"
 
 namespace {
 
-/// Lanes that draw lights by x of the sum of weights: the first light that takes that sum above x, its weight and
-/// the sum before it; weight 0 where there is none.
+/// Lanes that draw bright tiles by x of the sum of weights: the first light that takes that sum above x, its weight
+/// and the sum before it; weight 0 where there is none.
 struct LightDraws {
     Vector x, weight = all(0.0), before = all(0.0);
     Integer number = {};
@@ -24,12 +24,12 @@ struct LightDraws {
     }
 };
 
-/* The lights of normals of their own: acdf_local_tabled_lights of all that some triangle may see. */
+/* The bright tiles of normals of their own: acdf_local_tabled_bright_tiles of all that some triangle may see. */
 template <class P>
 ACDF_LANE void offer_lights(const AcdfLocal& local, const PointsOf<P>&, const FastPointLanes& lanes,
                             const long long lane[ACDF_WIDTH], LightDraws* draws) {
-    const AcdfLightPair* const pair = acdf_local_lights(local.tables);
-    const Corners at = corners_at(lanes.lights, loaded(lane));
+    const AcdfBrightTilePair* const pair = acdf_local_bright_tiles(local.tables);
+    const Corners at = corners_at(lanes.bright_tiles, loaded(lane));
     const Vector inverse = 1.0 / at.length;
     std::uint32_t seen = 0;
     for (int i = 0; i < ACDF_WIDTH; ++i) seen |= facet_at(local, lanes.facet[lane[i]]).seen;

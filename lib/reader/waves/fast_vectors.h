@@ -204,7 +204,7 @@ struct FastPoints : Corners {
     static constexpr bool kEach = false;
     Integer group[kRows], tile[kRows], upper[Draws ? kRows : 1];
     Ints share[kRows]; // AcdfFastMixture::weight
-    Vector whole, mixture, lights, sum, step, unit;
+    Vector whole, mixture, bright_tiles, sum, step, unit;
     Integer others; // in the lower halves, AcdfFacet::others
 };
 
@@ -235,7 +235,7 @@ ACDF_LANE void set_points(const AcdfLocal& local, FastPoints<Draws>* out) {
     out->mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
     mix_rows(out->mixture, out);
     leave_others(local, out);
-    out->sum = out->lights + out->mixture;
+    out->sum = out->bright_tiles + out->mixture;
     if (Draws) out->step = 32767.0 * out->whole / out->mixture;
     out->unit = unit_of(out->mixture, out->sum, out->whole);
 }
@@ -252,9 +252,9 @@ ACDF_LANE void points_of(const AcdfLocal&, const AcdfLocalPoint& point, FastPoin
     }
     for (int i = 0; i < 3; ++i) out->normal[i] = all(point.normal[i]);
     out->length = all(point.length);
-    out->facet = Integer{}; // any: the point has its lights
+    out->facet = Integer{}; // any: the point has its bright tiles
     out->whole = all(mix.whole);
-    out->lights = all(point.lights);
+    out->bright_tiles = all(point.bright_tiles);
     out->others = Integer{};
     out->mixture = all(0.0); // of others alone
     out->sum = all(point.sum);
@@ -275,7 +275,7 @@ struct FastLanes {
 /// What lanes have of their points.
 struct FastPointLanes {
     FastLanes rows;
-    LightLanes lights;
+    LightLanes bright_tiles;
     alignas(64) double whole[kRoom];
     alignas(64) long long facet[kRoom]; // of draws: in which byte of all it begins
 };
@@ -289,14 +289,14 @@ ACDF_LANE void keep_points(const FastPoints<Draws>& p, std::size_t at, FastPoint
         stored(&l->rows.share[i][at], p.share[i]);
     }
     stored(&l->rows.unit[at], p.unit);
-    keep_lights(p, at, &l->lights);
+    keep_lights(p, at, &l->bright_tiles);
     stored(&l->whole[at], p.whole);
     if (Draws) stored(&l->facet[at], p.facet);
 }
 
-/* What other lights change of them. */
+/* What other bright tiles change of them. */
 ACDF_LANE void end_points(const AcdfLocal& local, FastPointLanes* l) {
-    add_other_lights(local, &l->lights, [l](const long long* lane, Integer at, Vector mixture, Vector sum) {
+    add_other_lights(local, &l->bright_tiles, [l](const long long* lane, Integer at, Vector mixture, Vector sum) {
         alignas(64) double unit[ACDF_WIDTH];
         stored(unit, unit_of(mixture, sum, gathered_doubles(l->whole, at)));
         for (int i = 0; i < ACDF_WIDTH; ++i) l->rows.unit[lane[i]] = unit[i];

@@ -52,10 +52,10 @@ DirectionSample end_draw(const AcdfLocal& local, const AcdfGrid& grid, const Lan
     double u[2], given;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     acdf_tile_walk_end(&lane.walk, &lane.point.mix, kRows, u, &given);
-    const double of_mixture = acdf_local_drawn_tile(&local, &lane.point, lane.tile, given, range);
+    const double of_mixture = acdf_local_sampled_tile(&local, &lane.point, lane.tile, given, range);
     const double probability = acdf_local_tile_probability(&local, &lane.point, lane.tile, of_mixture);
-    const double p = acdf_local_draw_inside(&local, lane.tile, probability, u, range);
-    return acdf_local_place(&local, &lane.point, &grid, range, u, p);
+    const double p = acdf_local_sample_inside(&local, lane.tile, probability, u, range);
+    return acdf_local_direction_sample(&local, &lane.point, &grid, range, u, p);
 }
 
 void ask_for_curves(const AcdfLocal& local, const Lane* lane, std::size_t count) {
@@ -68,7 +68,7 @@ bool serves_waves(const AcdfLocal& local) {
 }
 bool serves_waves(const AcdfLocalPoint& point) {
     return (point.what == ACDF_LOCAL_BLEND || point.what == ACDF_LOCAL_FAST) && point.mix.count == kRows &&
-           point.place.count == 0 && point.windows.count == 0;
+           point.visibility.count == 0 && point.visible_portals.count == 0;
 }
 
 #if ACDF_WAVEFRONT_X86
@@ -118,7 +118,7 @@ void LocalWavefront::sample(const float (*normals)[3], const double (*u)[2], std
             Lane& l = lane[used];
             acdf_local_at(&local_, normals[i], &l.point);
             const double v[2] = {acdf_unit_interval(u[i][0]), acdf_unit_interval(u[i][1])};
-            if (!usual(local_, l.point) || !acdf_local_draws_mixture(&l.point, v[0])) {
+            if (!usual(local_, l.point) || !acdf_local_samples_mixture(&l.point, v[0])) {
                 out[i] = alone::local_sample(local_, l.point, v);
                 continue;
             }

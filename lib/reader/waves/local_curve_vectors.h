@@ -67,8 +67,8 @@ ACDF_LANE std::uint32_t bytes_before(__m128i not_above) {
  * cumulative values, whether there are links of one byte, and three of the segments. */
 constexpr std::uint32_t kOneSegment = 1u << ACDF_CURVE_SEGMENTS_SHIFT, kOtherBits = 0xFFFFE370u;
 
-/* acdf_curve_draw, or a step of acdf_tree_locate, of a curve that has no other bits. Returns the distance to the
- * child, 0 where it ends. */
+/* acdf_short_curve_sample, or a step of acdf_tree_locate, of a curve that has no other bits. Returns the distance
+ * to the child, 0 where it ends. */
 template <bool Finds>
 ACDF_LANE std::uint32_t turn_of(std::uint32_t header, const std::uint32_t* square, CurveLane* lane) {
     const std::uint8_t* const bytes = lane->at;

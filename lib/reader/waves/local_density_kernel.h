@@ -127,13 +127,13 @@ ACDF_LANE void ask_for_rows(const AcdfLocalTables& tables, const Seen& seen, con
 /* Of a tile to which the mixture gives nothing: that of its light. */
 __attribute__((noinline)) double light_probability(const AcdfLocal& local, const Seen& seen, std::size_t i,
                                                    std::uint32_t tile) {
-    const std::uint32_t light = acdf_local_light_of(&local, tile);
+    const std::uint32_t light = acdf_local_bright_tile_of(&local, tile);
     if (light == 0) return 0.0;
     AcdfLocalPoint point;
     for (int k = 0; k < 3; ++k) point.normal[k] = seen.normal[k][i];
     point.length = seen.length[i];
-    point.place.count = 0;
-    const double probability = acdf_local_light_weight(&local, &point, light - 1) / seen.sum[i];
+    point.visibility.count = 0;
+    const double probability = acdf_local_bright_tile_weight(&local, &point, light - 1) / seen.sum[i];
     return probability > 0.0 ? acdf_positive(probability) : 0.0;
 }
 

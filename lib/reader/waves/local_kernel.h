@@ -28,13 +28,13 @@ struct Walks {
 
 // ---- numbers ---------------------------------------------------------------------------------------------------
 
-/* acdf_local_draw_light of the lanes of a mask, into cells; of tiles the numbers of the lights. */
+/* acdf_local_sample_bright_tile of the lanes of a mask, into cells; of tiles the numbers of the bright tiles. */
 ACDF_LANE void draw_lights(const AcdfLocal& local, const Points<true>& p, const Vector u[2], unsigned mask,
                            Integer lane, Cells* cells) {
     Vector x = u[0] * p.sum, weight = all(0.0), number = all(0.0);
     Mask active = all_lanes();
-    for (std::uint32_t k = 0; k < local.light_count;) {
-        for (std::uint32_t end = std::min(k + 8, local.light_count); k < end; ++k) {
+    for (std::uint32_t k = 0; k < local.bright_tile_count;) {
+        for (std::uint32_t end = std::min(k + 8, local.bright_tile_count); k < end; ++k) {
             const Mask taken = both(active, less(all(0.0), p.light[k]));
             x = choose(taken, x - weight, x);
             weight = choose(taken, p.light[k], weight);
@@ -87,7 +87,7 @@ ACDF_LANE void begin_walks(const Points<true>& p, const Rows& rows, const Vector
                            std::uint32_t root, Walks* walks) {
     const std::size_t at = walks->count;
     for (int i = 0; i < kRows; ++i) store_packed(&walks->weight[i][at], p.weight[i], mask);
-    store_packed(&walks->x[0][at], u[0] * p.sum - p.lights, mask);
+    store_packed(&walks->x[0][at], u[0] * p.sum - p.bright_tiles, mask);
     store_packed(&walks->x[1][at], u[1] * p.mixture, mask);
     store_packed(&walks->mixture[at], p.mixture, mask);
     store_packed(&walks->sum[at], p.sum, mask);
@@ -162,8 +162,8 @@ ACDF_LANE void walk(const AcdfLocalTables& tables, const Rows& rows, Walks* w) {
     }
 }
 
-/* acdf_tile_walk_end, acdf_local_drawn_tile and acdf_local_tile_probability of all lanes, into cells behind others;
- * `scaled(at, of_all)`: the probabilities of a vector of tiles that are such a part of all. */
+/* acdf_tile_walk_end, acdf_local_sampled_tile and acdf_local_tile_probability of all lanes, into cells behind
+ * others; `scaled(at, of_all)`: the probabilities of a vector of tiles that are such a part of all. */
 template <class Scaled>
 ACDF_LANE void end_walks(const AcdfLocal& local, const Walks& w, const Scaled& scaled, Cells* cells) {
     for (std::size_t i = 0; i < w.count; ++i)
@@ -213,7 +213,7 @@ ACDF_LANE Vector fold_place(const AcdfLocal& local, const Cells& cells, const Bo
     return area_pdf(probabilities(cells, done, at), columns, fold_area(width[0], width[1], rows));
 }
 
-/* acdf_local_place of all cells. Returns the lanes that are not answered. */
+/* acdf_local_direction_sample of all cells. Returns the lanes that are not answered. */
 ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, const Boxes& done,
                                     AcdfDirectionSample* out) {
     std::uint64_t lost = 0;
@@ -227,7 +227,7 @@ ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, 
             pdf[half] = local.tables->octahedral ? fold_place(local, cells, done, at, half, &d)
                                                  : row_place(local, cells, done, at, half, &d);
         }
-        const std::uint32_t refused = drawn_directions(local.tables->octahedral != 0, d, direction);
+        const std::uint32_t refused = sampled_directions(local.tables->octahedral != 0, d, direction);
         store_samples(direction, to_floats((Doubles)pdf[0], (Doubles)pdf[1]), drawn);
         for (std::size_t i = 0; i < kLanes && first + i < done.count; ++i) {
             const std::size_t lane = (std::size_t)cells.lane[first + i];
@@ -255,13 +255,14 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const Rows& rows, const At& at
         const Integer lane = numbers_from(first);
         Vector v[2];
         numbers_of(u + first, more, v);
-        const unsigned served = bits(p.served) & there, light = bits((Integer)(v[0] * p.sum < p.lights)) & served;
+        const unsigned served = bits(p.served) & there,
+                       light = bits((Integer)(v[0] * p.sum < p.bright_tiles)) & served;
         lost |= (std::uint64_t)(served ^ there) << first;
         begin_walks(p, rows, v, served ^ light, lane, local.tables->tiles.root, &walks);
         if (light) draw_lights(local, p, v, light, lane, &cells);
     });
     for (std::size_t i = 0; i < cells.count; ++i) {
-        cells.tile[i] = local.lights[cells.tile[i]].tile;
+        cells.tile[i] = local.bright_tiles[cells.tile[i]].tile;
         ACDF_PREFETCH(acdf_local_tile(local.tables, (std::uint32_t)cells.tile[i]));
     }
     walk(*local.tables, rows, &walks);

@@ -1,5 +1,5 @@
 // Lights of shading points that densities are told for, of a block of lanes. Those above the horizons of all
-// normals of a triangle are one sum (acdf/local_lights.h); the others few lanes have, which are packed behind each
+// normals of a triangle are one sum (acdf/bright_tiles.h); the others few lanes have, which are packed behind each
 // other. Internal linkage: see local_kernel.h.
 #pragma once
 
@@ -9,9 +9,9 @@
 
 namespace {
 
-/// What lanes have of lights: of their points, which leave others out until add_other_lights.
+/// What lanes have of bright tiles: of their points, which leave others out until add_other_lights.
 struct LightLanes {
-    alignas(64) double normal[3][kRoom], length[kRoom], lights[kRoom], mixture[kRoom], sum[kRoom];
+    alignas(64) double normal[3][kRoom], length[kRoom], bright_tiles[kRoom], mixture[kRoom], sum[kRoom];
     alignas(64) long long others[kRoom]; // in the lower halves, AcdfFacet::others
     std::uint64_t unlike = 0;            // lanes that have some
 };
@@ -21,7 +21,7 @@ template <class P>
 ACDF_LANE void keep_lights(const P& p, std::size_t at, LightLanes* l) {
     for (int i = 0; i < 3; ++i) stored(&l->normal[i][at], p.normal[i]);
     stored(&l->length[at], p.length);
-    stored(&l->lights[at], p.lights);
+    stored(&l->bright_tiles[at], p.bright_tiles);
     stored(&l->mixture[at], p.mixture);
     stored(&l->sum[at], p.sum);
     stored(&l->others[at], p.others);
@@ -54,19 +54,19 @@ template <class Then>
 ACDF_LANE void add_other_lights(const AcdfLocal& local, LightLanes* l, const Then& then) {
     for (std::uint64_t left = l->unlike; left;) {
         alignas(64) long long lane[ACDF_WIDTH];
-        alignas(64) double lights[ACDF_WIDTH], sum[ACDF_WIDTH];
+        alignas(64) double bright_tiles[ACDF_WIDTH], sum[ACDF_WIDTH];
         left = next_lanes(left, lane);
         std::uint32_t any = 0;
         for (const long long i : lane) any |= (std::uint32_t)l->others[i];
         const Integer at = loaded(lane);
         const Corners corners = corners_at(*l, at);
         const Vector others =
-            gathered_doubles(l->lights, at) + other_lights(local, corners, gathered<8>(l->others, at), any);
+            gathered_doubles(l->bright_tiles, at) + other_lights(local, corners, gathered<8>(l->others, at), any);
         const Vector mixture = gathered_doubles(l->mixture, at), all = others + mixture;
-        stored(lights, others);
+        stored(bright_tiles, others);
         stored(sum, all);
         for (int i = 0; i < ACDF_WIDTH; ++i) {
-            l->lights[lane[i]] = lights[i];
+            l->bright_tiles[lane[i]] = bright_tiles[i];
             l->sum[lane[i]] = sum[i];
         }
         then(lane, at, mixture, all);

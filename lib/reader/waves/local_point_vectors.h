@@ -32,11 +32,11 @@ struct Points : Corners {
     static constexpr bool kEach = Draws; // whether they have the weight of each light
     Integer codes[kRows];                // addresses of those of the rows
     Integer others; // of densities, in the lower halves: AcdfFacet::others, which sums leave out
-    Vector lights, mixture, sum, light[Draws ? ACDF_MAX_LIGHTS : 1];
+    Vector bright_tiles, mixture, sum, light[Draws ? ACDF_MAX_BRIGHT_TILES : 1];
 };
 
 /* acdf_pair_weight */
-ACDF_LANE Vector pair_weight(const Corners& at, const AcdfLightPair& pair, std::uint32_t i, Vector inverse) {
+ACDF_LANE Vector pair_weight(const Corners& at, const AcdfBrightTilePair& pair, std::uint32_t i, Vector inverse) {
     const Vector height = (at.normal[0] * pair.direction[0][i] + at.normal[1] * pair.direction[1][i]) +
                           at.normal[2] * pair.direction[2][i];
     const Vector radius = pair.radius[i] * at.length, above = height + radius;
@@ -48,7 +48,7 @@ ACDF_LANE const AcdfFacet& facet_at(const AcdfLocal& local, long long byte) {
     return *(const AcdfFacet*)(const void*)((const char*)(const void*)acdf_local_facets(local.tables) + byte);
 }
 
-/// What facets of lanes tell of their lights.
+/// What facets of lanes tell of their bright tiles.
 struct Facets {
     Vector whole;      // acdf_facet_whole
     Integer others;    // in the lower halves, AcdfFacet::others
@@ -77,7 +77,7 @@ ACDF_LANE Facets facets_of(const AcdfLocal& local, const Corners& at) {
 
 /* What the pairs of `left` give to normals that have them among others. */
 ACDF_LANE Vector other_lights(const AcdfLocal& local, const Corners& at, Integer others, std::uint32_t left) {
-    const AcdfLightPair* const pair = acdf_local_lights(local.tables);
+    const AcdfBrightTilePair* const pair = acdf_local_bright_tiles(local.tables);
     const Vector inverse = 1.0 / at.length;
     Vector sum[2] = {all(0.0), all(0.0)};
     for (; left; left &= left - 1) {
@@ -89,22 +89,23 @@ ACDF_LANE Vector other_lights(const AcdfLocal& local, const Corners& at, Integer
     return sum[0] + sum[1];
 }
 
-/* The lights above the horizons of all normals of a triangle, and which others there are. */
+/* The bright tiles above the horizons of all normals of a triangle, and which others there are. */
 template <class P>
 ACDF_LANE void leave_others(const AcdfLocal& local, P* out) {
     const Facets of = facets_of(local, *out);
-    out->lights = of.whole;
+    out->bright_tiles = of.whole;
     out->others = of.others;
 }
 
-/* The weight of each light, as acdf_light_weight has it. The horizon cuts few lights: those are weighed again. */
+/* The weight of each light, as acdf_bright_tile_weight has it. The horizon cuts few bright tiles: those are weighed
+ * again. */
 ACDF_LANE void weigh_each(const AcdfLocal& local, Points<true>* out) {
-    const AcdfLightPair* pair = acdf_local_lights(local.tables);
+    const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local.tables);
     const Vector* const normal = out->normal;
     const Vector length = out->length;
-    Vector height[ACDF_MAX_LIGHTS];
+    Vector height[ACDF_MAX_BRIGHT_TILES];
     std::uint64_t cut = 0;
-    for (std::uint32_t k = 0; k < local.light_count; k += 2, ++pair)
+    for (std::uint32_t k = 0; k < local.bright_tile_count; k += 2, ++pair)
         for (std::uint32_t i = 0; i < 2; ++i) {
             const Vector h = (normal[0] * pair->direction[0][i] + normal[1] * pair->direction[1][i]) +
                              normal[2] * pair->direction[2][i];
@@ -114,18 +115,18 @@ ACDF_LANE void weigh_each(const AcdfLocal& local, Points<true>* out) {
         }
     for (; cut; cut &= cut - 1) {
         const std::uint32_t k = (std::uint32_t)__builtin_ctzll(cut), i = k % 2;
-        const AcdfLightPair& of = acdf_local_lights(local.tables)[k / 2];
+        const AcdfBrightTilePair& of = acdf_local_bright_tiles(local.tables)[k / 2];
         const Vector radius = of.radius[i] * length, above = height[k] + radius;
         out->light[k] = choose(less(absolute(height[k]), radius), of.share[i] * (above * above / (4.0 * radius)),
                                out->light[k]);
     }
 }
 
-/* All lights, and of densities those that all normals of a triangle see. */
+/* All bright tiles, and of densities those that all normals of a triangle see. */
 ACDF_LANE void weigh_lights(const AcdfLocal& local, Points<true>* out) {
     weigh_each(local, out);
     const Facets of = facets_of(local, *out);
-    out->lights = of.whole + other_lights(local, *out, of.others, of.any); // acdf_facet_lights
+    out->bright_tiles = of.whole + other_lights(local, *out, of.others, of.any); // acdf_facet_bright_tiles
 }
 ACDF_LANE void weigh_lights(const AcdfLocal& local, Points<false>* out) { leave_others(local, out); }
 
@@ -199,7 +200,7 @@ ACDF_LANE void set_points(const AcdfLocal& local, Points<Draws>* out) {
     for (int i = 0; i < kRows; ++i) out->codes[i] = multiplied(out->row[i], tiles.stride) + rows;
     weigh_lights(local, out);
     out->mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
-    out->sum = out->lights + out->mixture;
+    out->sum = out->bright_tiles + out->mixture;
     out->served &= out->sum > 0.0;
 }
 
@@ -216,7 +217,7 @@ ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, Po
     }
     out->length = all(point.length);
     if constexpr (Draws) weigh_each(local, out);
-    out->lights = all(point.lights);
+    out->bright_tiles = all(point.bright_tiles);
     out->others = Integer{};
     out->mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
     out->sum = all(point.sum);

@@ -71,7 +71,7 @@ ACDF_LANE Signed are_not_directions(Floats sin2, Floats length2) {
     return ((Words)length2 - 0x3F7FF972u > 0x000009D4u) | ((Words)sin2 < 0x2B800000u);
 }
 
-/* acdf_direction_place: local azimuth, or place across the square, cap or place along it, and keys. Returns the
+/* acdf_keys_of_direction: local azimuth, or place across the square, cap or place along it, and keys. Returns the
  * lanes of which floats do not tell. */
 ACDF_LANE Signed direction_place(bool octahedral, const Floats w[3], Floats* along, Floats* cap, Words key[2]) {
     const Floats sin2 = w[0] * w[0] + w[1] * w[1], length2 = sin2 + w[2] * w[2];

@@ -105,7 +105,7 @@ ACDF_LANE void fold_direction(double columns, double rows, const Vector low[2], 
 }
 
 /* What both end with. Returns the lanes that are refused. */
-ACDF_LANE std::uint32_t drawn_directions(bool octahedral, const Drawn& d, Floats out[3]) {
+ACDF_LANE std::uint32_t sampled_directions(bool octahedral, const Drawn& d, Floats out[3]) {
     const Floats angle = to_floats((Doubles)d.angle[0], (Doubles)d.angle[1]);
     const Floats cap = to_floats((Doubles)d.cap[0], (Doubles)d.cap[1]);
     if (octahedral) square_direction(angle, cap, out);

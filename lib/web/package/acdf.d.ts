@@ -43,7 +43,7 @@ export interface At {
 export interface AcdfFile {
     readonly kind: Info["kind"];
     readonly info: Info;
-    /** Draws for pairs of random numbers in [0, 1]: x y z pdf for each, 4 floats. Not of tables (pdf 0). */
+    /** Samples for pairs of random numbers in [0, 1]: x y z pdf for each, 4 floats. Not of tables (pdf 0). */
     sample(u: ArrayLike<number>, at?: At): Float32Array;
     /** Densities of directions, x y z each; 0 where no sample falls, for NaN and for directions of another length. */
     pdf(directions: ArrayLike<number>, at?: At): Float32Array;
@@ -51,8 +51,8 @@ export interface AcdfFile {
     map(width: number, height: number, at?: At): Float32Array;
     /** Of an environment: first and last position on axis 0, then on axis 1, 4 numbers a cell. Empty of other kinds. */
     cells(): Uint32Array;
-    /** Of the samples of both, how many to draw from this file where it has a company, in (0, 1]. */
-    recommendedShare(at?: At): number;
+    /** Of the samples of both, how many to sample from this file where it has an MIS partner, in (0, 1]. */
+    recommendedLightShare(at?: At): number;
     /** Words for the functions of "acdf/shaders", of an environment, a local environment or a BRDF. Throws AcdfError. */
     shaderTables(): Uint32Array;
     /** Gives the memory back. What is called then throws. */

@@ -98,7 +98,7 @@ class AcdfFile {
         return this.#call([[Uint32Array, 4 * count]], ([to]) => this.#exports.acdf_web_cells(this.#handle(), to, count));
     }
 
-    recommendedShare(options = {}) {
+    recommendedLightShare(options = {}) {
         let share = 1;
         this.#call([[this.#at(options)], [Float32Array, 1]], ([at]) => {
             share = this.#exports.acdf_web_share(this.#handle(), at);
@@ -140,18 +140,18 @@ class AcdfFile {
     // move with every allocation, so that views of it are made after the last.
     #call(arrays, run) {
         this.#handle();
-        const places = [];
+        const addresses = [];
         try {
             for (const [array, length] of arrays)
-                places.push(this.#allocate(length === undefined ? array.byteLength : array.BYTES_PER_ELEMENT * length));
+                addresses.push(this.#allocate(length === undefined ? array.byteLength : array.BYTES_PER_ELEMENT * length));
             arrays.forEach(([array, length], i) => {
-                if (length === undefined) new array.constructor(this.#exports.memory.buffer, places[i]).set(array);
+                if (length === undefined) new array.constructor(this.#exports.memory.buffer, addresses[i]).set(array);
             });
-            run(places);
+            run(addresses);
             const [Type, length] = arrays.at(-1);
-            return new Type(this.#exports.memory.buffer, places.at(-1), length).slice();
+            return new Type(this.#exports.memory.buffer, addresses.at(-1), length).slice();
         } finally {
-            places.forEach(this.#exports.acdf_web_free);
+            addresses.forEach(this.#exports.acdf_web_free);
         }
     }
 

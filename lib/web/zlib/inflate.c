@@ -227,7 +227,7 @@ static int inflate_stream(Input* in, Room* out) {
 }
 
 int inflate(z_stream* stream, int flush) {
-    Bytef nothing = 0; /* stands for places that are null, of which C knows no sums */
+    Bytef nothing = 0; /* stands for null pointers, to which C adds nothing */
     Bytef* from = stream->next_in ? stream->next_in : &nothing;
     Bytef* to = stream->next_out ? stream->next_out : &nothing;
     Input in = {from, from + stream->avail_in, 0, 0, 0};

@@ -41,8 +41,8 @@ struct Lookup {
 };
 
 /// Of one sample of `channels`, by many.
-double drawn_variance(const LocalEnvironmentView& view, const build::Normal& normal, const Lookup& lookup,
-                      std::size_t channels, std::mt19937_64& random) {
+double sampled_variance(const LocalEnvironmentView& view, const build::Normal& normal, const Lookup& lookup,
+                        std::size_t channels, std::mt19937_64& random) {
     const int count = kSanitized ? 20000 : 400000;
     double sum[3] = {}, square = 0.0;
     for (int i = 0; i < count; ++i) {
@@ -100,9 +100,9 @@ TEST(LocalFiles, ChannelsAndFiltersCountAsSamplesTell) {
             const compress::Target target = target_of(lookup, channels);
             const build::Local local = of_budget(target, 262144);
             const File file = opened(local);
-            const double drawn = drawn_variance(file.local(), kNormal, lookup, channels, random);
+            const double sampled = sampled_variance(file.local(), kNormal, lookup, channels, random);
             const build::NormalAccuracy measured = build::measure_normals(file, target, {kNormal}).front();
-            EXPECT_NEAR(measured.relative_variance, drawn, 0.03 * drawn);
+            EXPECT_NEAR(measured.relative_variance, sampled, 0.03 * sampled);
             EXPECT_GE(measured.max_weight, 1.0 + measured.relative_variance);
         }
 }
@@ -114,9 +114,9 @@ TEST(LocalFiles, MapsOfFewTexelsCountAsSamplesTell) {
     const compress::Target target = target_of(lookup, 1);
     const build::Local local = of_budget(target, 65536);
     const File file = opened(local);
-    const double drawn = drawn_variance(file.local(), kNormal, lookup, 1, random);
-    EXPECT_NEAR(build::measure_normals(file, target, {kNormal}).front().relative_variance, drawn,
-                (kSanitized ? 0.3 : 0.1) * drawn);
+    const double sampled = sampled_variance(file.local(), kNormal, lookup, 1, random);
+    EXPECT_NEAR(build::measure_normals(file, target, {kNormal}).front().relative_variance, sampled,
+                (kSanitized ? 0.3 : 0.1) * sampled);
 }
 
 // A horizon that goes through a texel leaves the light above it.

@@ -1,11 +1,11 @@
 // Local environment maps of real probes, at the sizes that users ask for, beside everything that a renderer could
 // use instead. All by exact summation, over random normals that are no bin's own.
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 
 #include "build/accuracy/local.h"
 #include "build/local.h"
 #include "input/probe/probe.h"
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 #include "measure/samplers/tiling.h"
 
 #include <gtest/gtest.h>
@@ -68,8 +68,8 @@ double gain(const Probe& probe, std::uint64_t budget, const build::Local& local)
     return gain;
 }
 
-/// Over every eighth of the normals: rivals are summed over all texels for each.
-void expect_less_noise_than_rivals(const Probe& probe, const build::Local& local) {
+/// Over every eighth of the normals: baselines are summed over all texels for each.
+void expect_less_noise_than_baselines(const Probe& probe, const build::Local& local) {
     std::vector<build::Normal> normals;
     const std::vector<build::Normal> all = build::random_normals(256);
     for (std::size_t i = 0; i < all.size(); i += 8) normals.push_back(all[i]);
@@ -108,7 +108,7 @@ TEST_F(LocalProbes, OneMegabyte) {
         EXPECT_GE(a.least_share_above_horizon, 0.97) << probe.file;
         EXPECT_LE(a.least_share_above_horizon_full_cdf, 0.35) << probe.file;
         EXPECT_LE(a.max_weight, 200.0) << probe.file;
-        expect_less_noise_than_rivals(probe, local);
+        expect_less_noise_than_baselines(probe, local);
         sum += std::log(g);
     }
     EXPECT_GE(std::exp(sum / std::size(kProbes)), 100.0);

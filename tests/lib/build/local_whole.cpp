@@ -132,11 +132,11 @@ TEST(PointsWithoutNormal, OfOtherGoals) {
 }
 
 TEST(PointsWithoutNormal, BesideEveryPartner) {
-    for (const AcdfCompanyKind kind : {ACDF_COMPANY_COSINE, ACDF_COMPANY_BRDF})
+    for (const AcdfPartnerKind kind : {ACDF_PARTNER_COSINE, ACDF_PARTNER_BRDF})
         for (const AcdfHeuristic heuristic : {ACDF_HEURISTIC_BALANCE, ACDF_HEURISTIC_POWER}) {
             builder::LocalOptions options = of_budget(48 << 10, builder::LocalShape::automatic);
-            options.company.kind = kind;
-            options.company.heuristic = heuristic;
+            options.mis.kind = kind;
+            options.mis.heuristic = heuristic;
             expect_serves_points(options, "beside " + std::to_string(int(kind)));
             if (acdf_test::kSanitized) return;
         }

@@ -1,5 +1,5 @@
-// Files of places with portals: a room with a window, in the light of a smooth sky. Sums over the window judge
-// them.
+// Files with visibility cells with portals: a room with a window, in the light of a smooth sky. Sums over the
+// window judge them.
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 
@@ -20,7 +20,7 @@ using acdf_test::kPi;
 using acdf_test::Normal;
 using acdf_test::random_direction;
 using acdf_test::uniform;
-using builder::PlacePoint;
+using builder::VisibilityPoint;
 
 double light_from(const double d[3]) {
     return 0.4 + 0.3 * d[2] + 2.0 * std::exp(-6.0 * ((d[0] - 0.8) * (d[0] - 0.8) + (d[1] - 0.5) * (d[1] - 0.5)));
@@ -74,7 +74,7 @@ bool leaves(const Room& room, const float p[3], const float direction[3]) {
 }
 
 /// On the floor, the wall across from the window, and a wall beside it.
-bool point_of_room(std::uint64_t index, PlacePoint& point) {
+bool point_of_room(std::uint64_t index, VisibilityPoint& point) {
     std::uint64_t state = index; // SplitMix64 (Steele et al. 2014)
     const auto u = [&] {
         std::uint64_t z = state += 0x9E3779B97F4A7C15u;
@@ -99,9 +99,11 @@ builder::Portal portal_of(const Hole& hole) {
 builder::LocalOptions of_room(std::vector<builder::Portal> portals, const Room& room = {kWindow}) {
     builder::LocalOptions out;
     out.goal = builder::Goal::of_budget(64 << 10);
-    out.places.point = point_of_room;
-    out.places.occluded = [room](const PlacePoint& p, const float* d) { return !leaves(room, p.position, d); };
-    out.places.portals = std::move(portals);
+    out.visibility.point = point_of_room;
+    out.visibility.occluded = [room](const VisibilityPoint& p, const float* d) {
+        return !leaves(room, p.position, d);
+    };
+    out.visibility.portals = std::move(portals);
     return out;
 }
 
@@ -124,7 +126,7 @@ const RoomFile& windowed() {
     return made;
 }
 
-double cosine_of(const PlacePoint& point, const float d[3]) {
+double cosine_of(const VisibilityPoint& point, const float d[3]) {
     return double{point.normal[0]} * double{d[0]} + double{point.normal[1]} * double{d[1]} +
            double{point.normal[2]} * double{d[2]};
 }
@@ -134,7 +136,7 @@ struct Arrives {
     double irradiance = 0.0, variance = 0.0;
     int lost = 0;
 };
-Arrives arrives(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const PlacePoint& point,
+Arrives arrives(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const VisibilityPoint& point,
                 const Room& room) {
     constexpr int steps = 96;
     Arrives out;
@@ -174,7 +176,7 @@ void expect_as_summed(const RoomFile& made, const Room& room, int count, double 
     std::mt19937_64 random(11);
     double sum = 0.0, square = 0.0;
     for (int i = 0; i < count; ++i) {
-        PlacePoint point;
+        VisibilityPoint point;
         point_of_room(1000003 + std::uint64_t(i), point);
         const AcdfLocalPoint at = made.view().at(point.position, point.normal);
         const Arrives truth = arrives(made.view(), at, point, room);
@@ -207,13 +209,13 @@ TEST(PortalFiles, AreUnbiasedWhereHalfOfTheWindowIsShut) {
     ACDF_NOT_SANITIZED();
     expect_as_summed(windowed(), {kHalf}, 100, 0.3);
 }
-/// What comes in there is drawn rarely: means of so few samples are far from normal.
+/// What comes in there is sampled rarely: means of so few samples are far from normal.
 TEST(PortalFiles, AreUnbiasedWhereADoorIsOpened) { expect_as_summed(windowed(), {kWindow, kDoor}, 100, 1.0); }
 
 double mean_variance(const RoomFile& made) {
     double sum = 0.0;
     for (int i = 0; i < 150; ++i) {
-        PlacePoint point;
+        VisibilityPoint point;
         point_of_room(2000003 + std::uint64_t(i), point);
         const Arrives at = arrives(made.view(), made.view().at(point.position, point.normal), point, {kWindow});
         sum += at.variance / (at.irradiance * at.irradiance) / 150.0;
@@ -221,14 +223,14 @@ double mean_variance(const RoomFile& made) {
     return sum;
 }
 
-TEST(PortalFiles, HaveLessNoiseThanPlacesAlone) {
+TEST(PortalFiles, HaveLessNoiseThanCellsAlone) {
     ACDF_NOT_SANITIZED();
-    const RoomFile places(of_room({}));
-    EXPECT_TRUE(places.view().has_places());
-    EXPECT_FALSE(places.view().has_portals());
+    const RoomFile visibility(of_room({}));
+    EXPECT_TRUE(visibility.view().has_visibility());
+    EXPECT_FALSE(visibility.view().has_portals());
     EXPECT_TRUE(windowed().view().has_portals());
     EXPECT_LE(windowed().local.bytes.size(), 64u << 10);
-    const double with = mean_variance(windowed()), without = mean_variance(places);
+    const double with = mean_variance(windowed()), without = mean_variance(visibility);
     EXPECT_LT(with, 0.2);
     EXPECT_LT(3.0 * with, without);
 }
@@ -251,8 +253,8 @@ TEST(PortalFiles, AreThoseOfTheScenesOwnCoordinates) {
     builder::LocalOptions options = of_room({portal_of(kWindow)});
     options.goal = builder::Goal::of_budget(24 << 10);
     const float mirrored[3][4] = {{-0.5f, 0, 0, 1}, {0, 0.5f, 0, 0}, {0, 0, 0.5f, 0}};
-    for (int k = 0; k < 3; ++k) std::copy_n(mirrored[k], 4, options.places.transform[k]);
-    builder::Portal& portal = options.places.portals[0]; // x = 1 - x'/2
+    for (int k = 0; k < 3; ++k) std::copy_n(mirrored[k], 4, options.visibility.transform[k]);
+    builder::Portal& portal = options.visibility.portals[0]; // x = 1 - x'/2
     portal.corner[0] = 2.0f * (1.0f - portal.corner[0]);
     for (int k = 1; k < 3; ++k) {
         portal.corner[k] *= 2.0f;
@@ -261,16 +263,16 @@ TEST(PortalFiles, AreThoseOfTheScenesOwnCoordinates) {
     }
     std::swap(portal.across, portal.up); // light comes from the other side
     const RoomFile other(options);
-    PlacePoint point;
+    VisibilityPoint point;
     point_of_room(17, point);
     const float there[3] = {2.0f * (1.0f - point.position[0]), 2.0f * point.position[1], 2.0f * point.position[2]};
     const AcdfLocalPoint a = windowed().view().at(point.position, point.normal),
                          b = other.view().at(there, point.normal);
-    ASSERT_EQ(a.windows.count, 1);
-    ASSERT_EQ(b.windows.count, 1);
+    ASSERT_EQ(a.visible_portals.count, 1);
+    ASSERT_EQ(b.visible_portals.count, 1);
     for (int k = 0; k < 2; ++k) {
-        EXPECT_NEAR(a.windows.window[0].low[k], b.windows.window[0].low[k], 1e-5);
-        EXPECT_NEAR(a.windows.window[0].high[k], b.windows.window[0].high[k], 1e-5);
+        EXPECT_NEAR(a.visible_portals.visible_portal[0].low[k], b.visible_portals.visible_portal[0].low[k], 1e-5);
+        EXPECT_NEAR(a.visible_portals.visible_portal[0].high[k], b.visible_portals.visible_portal[0].high[k], 1e-5);
     }
 }
 
@@ -312,11 +314,11 @@ TEST(PortalFiles, MistakesAreValues) {
     EXPECT_NE(told(of_room({good, outside})).find("no light arrives through portal 2"), std::string::npos);
     EXPECT_NE(told(of_room(std::vector<builder::Portal>(9, good))).find("8 portals"), std::string::npos);
     builder::LocalOptions stretched = of_room({good}), alone = of_room({good});
-    stretched.places.transform[0][0] = 2.0f;
+    stretched.visibility.transform[0][0] = 2.0f;
     EXPECT_NE(told(stretched).find("keep angles"), std::string::npos);
-    alone.places.point = {};
-    alone.places.occluded = {};
-    EXPECT_NE(told(alone).find("with places"), std::string::npos);
+    alone.visibility.point = {};
+    alone.visibility.occluded = {};
+    EXPECT_NE(told(alone).find("with visibility cells"), std::string::npos);
 }
 
 } // namespace

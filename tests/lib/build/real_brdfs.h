@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/inputs/brdf_files.h"
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 
 #include "input/brdf/brdf.h"
 

@@ -252,7 +252,7 @@ TEST(TableFit, BinsOfOneCell) {
 }
 
 // Shares that no float can hold stay positive: nothing with energy is lost.
-TEST(TableFit, FaintBinsCanBeDrawn) {
+TEST(TableFit, FaintBinsCanBeSampled) {
     const input::NpyArray array = array_of({2, 4}, [](const ShapeVector& at) {
         return at[0] == 0 ? 3e38 : at[1] == 2 ? 1e-42 : 0.0;
     });

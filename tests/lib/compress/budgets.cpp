@@ -1,6 +1,6 @@
 // What a byte buys on real probes: the figures that docs/method.md quotes, as bounds. Whole files, stored
 // uncompressed, metadata of the usual length included; variances by exact summation over the stored density.
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 
 #include "build/accuracy/environment.h"
 #include "compress/fit/fit.h"

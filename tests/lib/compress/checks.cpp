@@ -152,11 +152,11 @@ std::vector<double> bin_probabilities(const CellMap& map, const Target& target) 
 }
 
 /// Where a direction lies on the grid, and how far down the sphere's area its row begins: 0 to 1.
-struct Place {
+struct Where {
     double column, row, z, down;
 };
 
-Place place_of(const float d[3], const Target& target) {
+Where where_of(const float d[3], const Target& target) {
     const double x = d[0], y = d[1], z = d[2];
     if (is_octahedral(target)) {
         const Square at = square_of(d);
@@ -180,7 +180,7 @@ void expect_chi_square(const char* what, const std::vector<std::uint32_t>& obser
 }
 
 /// What a direction rounded to float (by less than 2^-22 radians) may change in a cell's tilted density.
-double rounding_bound(const Cell& cell, const Place& place, const Target& target) {
+double rounding_bound(const Cell& cell, const Where& place, const Target& target) {
     if (cell.range[0].tilt == 0.0 && cell.range[1].tilt == 0.0) return 0.0;
     const auto z_of = [&](double row) { return std::cos(kPi * row / target.rows); };
     const auto share = [](const AcdfRange& range, double t, double error) {
@@ -217,7 +217,7 @@ struct Agreement {
 };
 
 /// The texel that a place lies in.
-std::size_t texel_of(const Place& place, const Target& target) {
+std::size_t texel_of(const Where& place, const Target& target) {
     return step_of(place.row, target.rows) * target.columns + step_of(place.column, target.columns);
 }
 
@@ -229,7 +229,7 @@ void check_samples(const EnvironmentView& view, const CellMap& map, const Target
     double estimate = 0.0;
     for (std::uint32_t i = 0; i < kSamples; ++i) {
         const auto sample = view.sample(uniform(random), uniform(random));
-        const Place place = place_of(sample.direction, target);
+        const Where place = where_of(sample.direction, target);
         const std::size_t texel = texel_of(place, target);
         agreement.add(view, sample, rounding_bound(map.cells[map.of_texel[texel]], place, target));
         ++in_cells[map.of_texel[texel]];
@@ -242,7 +242,7 @@ void check_samples(const EnvironmentView& view, const CellMap& map, const Target
     for (const double u0 : {0.0, 0.5, 1.0}) // at a cell's darkest edge rounding shows most
         for (const double u1 : {0.0, 0.5, 1.0}) {
             const auto sample = view.sample(u0, u1);
-            const Place place = place_of(sample.direction, target);
+            const Where place = where_of(sample.direction, target);
             const Cell& cell = map.cells[map.of_texel[texel_of(place, target)]];
             agreement.add(view, sample, rounding_bound(cell, place, target));
         }

@@ -1,6 +1,6 @@
 // The frozen files of every version: format/make_golden.cpp makes those of the present one.
 #include "tests/inputs/directions.h"
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/lib/reader/golden_numbers.h"
 #include <acdf/reader.h>
 
@@ -30,7 +30,7 @@ std::vector<char> bytes_of(const fs::path& path) {
 
 const char* const kNames[] = {
     "smallest", "one_texel",           "untilted",      "zlib",          "planes",       "tilted",
-    "deep",     "shared_child",        "wide",          "many_segments", "octahedral",   "company",
+    "deep",     "shared_child",        "wide",          "many_segments", "octahedral",   "partner",
     "halvings", "halvings_octahedral", "halvings_dark", "halvings_zlib", "halvings_leaf"};
 /// Whose maker is gone: curves of the variance fit, which now makes halvings. Readers go on reading them.
 const std::set<std::string> kNotMade = {"untilted.acdf", "untilted.txt"};
@@ -62,7 +62,7 @@ protected:
     std::vector<Line> lines_;
 };
 
-TEST_P(GoldenFile, DrawsTheSameSamples) {
+TEST_P(GoldenFile, SamplesTheSameSamples) {
     for (const Line& line : lines_) {
         const auto s = file_.environment().sample(line.u[0], line.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_EQ(s.direction[i], line.direction[i]);
@@ -70,7 +70,7 @@ TEST_P(GoldenFile, DrawsTheSameSamples) {
     }
 }
 
-TEST_P(GoldenFile, HasThatDensityThere) {
+TEST_P(GoldenFile, HasThatPdfThere) {
     const bool tilted = file_.description().fit == ACDF_FIT_PDF;
     for (const Line& line : lines_) {
         const float pdf = file_.environment().pdf(line.direction);

@@ -13,14 +13,14 @@ namespace {
 
 const std::string kGoldenLocal = ACDF_TEST_DIR "/golden/v1.0/";
 
-class GoldenLocal : public acdf_test::GoldenDraws {};
+class GoldenLocal : public acdf_test::GoldenSamples {};
 
-TEST_P(GoldenLocal, DrawsTheSameSamples) {
+TEST_P(GoldenLocal, SamplesTheSameSamples) {
     acdf::LoadOptions options; // as SPEC.md says it, to the last bit
     options.tables = false;
     acdf::File walked;
     ASSERT_TRUE(acdf::File::open((kGoldenLocal + GetParam() + ".acdf").c_str(), walked, options).ok());
-    for (const acdf_test::GoldenDraw& line : lines_) {
+    for (const acdf_test::GoldenSample& line : lines_) {
         const auto s = walked.local().sample(line.given, line.u[0], line.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_EQ(s.direction[i], line.direction[i]);
         EXPECT_EQ(s.pdf, line.pdf);
@@ -28,7 +28,7 @@ TEST_P(GoldenLocal, DrawsTheSameSamples) {
 }
 
 TEST_P(GoldenLocal, DrawsTheSameSamplesByRuntimeTables) { // but for the rounding of floats
-    for (const acdf_test::GoldenDraw& line : lines_) {
+    for (const acdf_test::GoldenSample& line : lines_) {
         const auto s = file_.local().sample(line.given, line.u[0], line.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_NEAR(s.direction[i], line.direction[i], 4e-7);
         EXPECT_EQ(file_.local().pdf(line.given, s.direction), s.pdf);
@@ -37,13 +37,13 @@ TEST_P(GoldenLocal, DrawsTheSameSamplesByRuntimeTables) { // but for the roundin
     }
 }
 
-TEST_P(GoldenLocal, HasThatDensityThere) {
-    int drawn = 0;
-    for (const acdf_test::GoldenDraw& line : lines_) {
+TEST_P(GoldenLocal, HasThatPdfThere) {
+    int sampled = 0;
+    for (const acdf_test::GoldenSample& line : lines_) {
         EXPECT_EQ(file_.local().pdf(line.given, line.direction), line.pdf);
-        drawn += line.pdf > 0.0f;
+        sampled += line.pdf > 0.0f;
     }
-    EXPECT_GT(drawn, 60);
+    EXPECT_GT(sampled, 60);
 }
 
 INSTANTIATE_TEST_SUITE_P(V1_0, GoldenLocal,
@@ -56,7 +56,7 @@ TEST(GoldenLocalContents, EachFileHasWhatItIsFor) {
     ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local.acdf").c_str(), local).ok());
     ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local_grid.acdf").c_str(), grid).ok());
     EXPECT_EQ(local.local().data().subdivisions, 2u);
-    EXPECT_EQ(local.local().data().light_count, 1u);
+    EXPECT_EQ(local.local().data().bright_tile_count, 1u);
     EXPECT_EQ(local.local().data().cosine_share, 0.25);
     EXPECT_EQ(local.bin(7).root, ACDF_NO_ROOT);
     EXPECT_EQ(grid.local().data().columns, 3u);

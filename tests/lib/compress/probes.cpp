@@ -1,5 +1,5 @@
 // Every fit, both orders, on real probes, and the figures that must hold there.
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/lib/compress/checks.h"
 
 #include "build/accuracy/environment.h"

@@ -111,7 +111,7 @@ TEST(Npy, DoublesBeyondFloatAreScaled) {
     EXPECT_NEAR(a.values[0] * a.scale / huge[0], 1.0, 1e-7);
     EXPECT_NEAR(a.values[1] * a.scale / huge[1], 1.0, 1e-7);
     EXPECT_EQ(a.values[2], 0.0f);
-    EXPECT_GT(a.values[3], 0.0f) << "what is positive stays so: else nothing would be drawn there";
+    EXPECT_GT(a.values[3], 0.0f) << "what is positive stays so: else nothing would be sampled there";
     EXPECT_LT(a.values[0], std::numeric_limits<float>::infinity());
 
     const NpyArray small = read(npy_file(std::vector<double>{1e-310, 3e-310}, {2}));

@@ -110,7 +110,7 @@ TEST(ScrambledSobol, HasLessVarianceThanIndependentNumbers) {
     EXPECT_LT(variance(Numbers::sobol), 0.2 * variance(Numbers::independent));
 }
 
-// Sets are padded: what one draws says nothing about what another does, so that products have the product's mean.
+// Sets are padded: what one samples says nothing about what another does, so that products have the product's mean.
 TEST(ScrambledSobol, SetsAreIndependent) {
     Random random(11, Numbers::sobol);
     std::vector<double> products;

@@ -1,4 +1,4 @@
-"""Draws and densities of arrays: shapes, types, memory, threads."""
+"""Samples and pdfs of arrays: shapes, types, memory, threads."""
 
 import concurrent.futures
 import glob
@@ -121,7 +121,7 @@ class Environments(unittest.TestCase):
         with self.assertRaisesRegex(MemoryError, "normal_weights: "):
             acdf.build_local(np.ones((4, 8)), normals=[[0, 0, 1]], normal_weights=np.broadcast_to(1, (vast,)))
 
-    def test_threads_draw_at_once(self):
+    def test_threads_sample_at_once(self):
         u = numbers(2000000, 2)
         spans, ticks, done = [], [], threading.Event()
 
@@ -183,7 +183,7 @@ class Brdfs(unittest.TestCase):
 
 
 class Tables(unittest.TestCase):
-    def test_draws_and_their_indices(self):
+    def test_samples_and_their_indices(self):
         table = acdf.open(os.path.join(TESTS, "..", "format", "vectors", "table.acdf"))
         axes = table.info()["axes"]
         sampled = sum(axis["role"] == "sampled" for axis in axes)

@@ -88,18 +88,18 @@ class Built(unittest.TestCase):
                 w = ours.sample(u).direction
                 np.testing.assert_array_equal(renderer.from_light(renderer.to_light(w)), w)
         self.assertEqual(acdf.renderers["cycles"].mirrorball_axes, (2, -1, 3))
-        self.assertEqual(acdf.build_environment(image, for_renderer="cycles").info()["company"]["heuristic"], "power")
-        self.assertFalse(acdf.build_environment(image, for_renderer="cycles", company="none").needs_company)
-        self.assertFalse(acdf.build_environment(image, for_renderer="cycles", max_weight=9).needs_company)
+        self.assertEqual(acdf.build_environment(image, for_renderer="cycles").info()["partner"]["heuristic"], "power")
+        self.assertFalse(acdf.build_environment(image, for_renderer="cycles", mis="none").requires_mis)
+        self.assertFalse(acdf.build_environment(image, for_renderer="cycles", max_weight=9).requires_mis)
         nearest = acdf.build_environment(image, for_renderer="cycles", filter="nearest")
         self.assertEqual(nearest.info()["filter"], "nearest")
         with self.assertRaisesRegex(ValueError, "for_renderer: 'v-ray' is none of pbrt-v4"):
             acdf.build_environment(image, for_renderer="v-ray")
 
     def test_companions(self):
-        sky = acdf.build_environment(sky_image(), budget="4KiB", company="cosine", shares=(2, 1))
-        self.assertTrue(sky.needs_company)
-        self.assertEqual(sky.info()["company"]["with"], "cosine")
+        sky = acdf.build_environment(sky_image(), budget="4KiB", mis="cosine", shares=(2, 1))
+        self.assertTrue(sky.requires_mis)
+        self.assertEqual(sky.info()["partner"]["kind"], "cosine")
 
     def test_brdfs_of_tables_and_of_functions(self):
         theta_h = (np.arange(30) + 0.5) / 30 * np.pi / 2
@@ -217,13 +217,13 @@ class Documentation(unittest.TestCase):
                     self.assertTrue(member.__doc__, f"{kind.__name__}.{name}")
 
     def test_info_is_that_of_the_program(self):
-        for name in ("zlib", "local", "brdf", "company"):
+        for name in ("zlib", "local", "brdf", "partner"):
             path = os.path.join(TESTS, "golden", "v1.0", name + ".acdf")
             theirs = json.loads(acdf_program("info", "--json", path))
             ours = acdf.open(path).info()
             for key in ("kind", "version", "bytes", "table_bytes", "bins", "axes", "fit", "filter", "parameterization", "total", "chunks"):
                 self.assertEqual(ours[key], theirs[key], (name, key))
-            self.assertEqual("company" in ours, "company" in theirs)
+            self.assertEqual("partner" in ours, "partner" in theirs)
             self.assertEqual(ours.get("accuracy", {}), theirs["accuracy"])
 
     def test_stubs_name_what_there_is(self):

@@ -18,7 +18,7 @@ except ImportError:
 
 @unittest.skipIf(matplotlib is None, "matplotlib is not installed")
 class Pictures(unittest.TestCase):
-    def test_densities_and_samples(self):
+    def test_pdfs_and_samples(self):
         image = np.ones((16, 32))
         image[4, 8] = 100
         for file in (acdf.build_environment(image, cells=100), acdf.build_local(image, budget="64KiB")):

@@ -48,10 +48,10 @@ std::vector<double> taken_near(const AcdfBrdf& brdf, int axis, double position, 
 
 /// Whether a density is that of a cell near a direction: as near as floats tell half-vectors.
 bool is_near(const AcdfBrdf& brdf, const AcdfBrdfView& view, const float wi[3], float pdf) {
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     double sign, half[3];
     if (!acdf_brdf_half(&view, wi, half, &place) || place.length < 1e-3) return true; // none, or lost in rounding
-    acdf_brdf_place(&brdf, &view, wi, &place, &sign);
+    acdf_brdf_half_position(&brdf, &view, wi, &place, &sign);
     const double turn = 3e-5 + 1e-6 / std::hypot(half[0], half[1]);
     for (const double column : taken_near(brdf, 0, place.position[0], turn * brdf.columns))
         for (const double row : taken_near(brdf, 1, place.position[1], turn * place.position[1])) {

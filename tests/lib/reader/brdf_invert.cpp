@@ -1,4 +1,4 @@
-// The random numbers that acdf_brdf_invert tells draw the direction that it was given.
+// The random numbers that acdf_brdf_invert tells sample the direction that it was given.
 #include "tests/lib/reader/brdf_forms.h"
 #include "tests/lib/reader/brdf_loaded.h"
 #include "tests/lib/reader/half_vectors.h"
@@ -56,11 +56,12 @@ protected:
     double room(const Direction& wo, const Direction& wi) const {
         const AcdfBrdf& brdf = view_.data();
         AcdfBrdfView at = {};
-        AcdfBrdfPlace place = {};
+        AcdfBrdfPosition place = {};
         AcdfRange range[2];
         double sign = 1.0, reach[2];
         float reflected[3];
-        EXPECT_TRUE(acdf_brdf_view(&brdf, wo.data(), &at) && acdf_brdf_place(&brdf, &at, wi.data(), &place, &sign));
+        EXPECT_TRUE(acdf_brdf_view(&brdf, wo.data(), &at) &&
+                    acdf_brdf_half_position(&brdf, &at, wi.data(), &place, &sign));
         EXPECT_GT(acdf_brdf_find(&brdf, &at, &place, range, nullptr), 0.0);
         acdf_brdf_reflect(&brdf, &at, place.position, sign, reflected, reach);
         return std::min((range[0].high - range[0].low) / reach[0], (range[1].high - range[1].low) / reach[1]);

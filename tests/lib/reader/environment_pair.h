@@ -39,13 +39,13 @@ inline std::uint32_t bits_of(float x) {
     return bits;
 }
 
-inline void expect_same_density(const EnvironmentPair& pair, const float direction[3]) {
+inline void expect_same_pdf(const EnvironmentPair& pair, const float direction[3]) {
     const float fast = pair.view().pdf(direction), plain = pair.plain.environment().pdf(direction);
     ASSERT_EQ(bits_of(fast), bits_of(plain)) << direction[0] << ' ' << direction[1] << ' ' << direction[2];
 }
 
-/// A draw, its density, and the densities of directions that rounding could make of it.
-inline void expect_same_draw(const EnvironmentPair& pair, double u0, double u1) {
+/// A sample, its density, and the densities of directions that rounding could make of it.
+inline void expect_same_sample(const EnvironmentPair& pair, double u0, double u1) {
     const acdf::DirectionSample fast = pair.view().sample(u0, u1);
     const acdf::DirectionSample plain = pair.plain.environment().sample(u0, u1);
     ASSERT_EQ(bits_of(fast.pdf), bits_of(plain.pdf)) << u0 << ' ' << u1; // of another cell it is another one
@@ -84,17 +84,17 @@ inline void expect_agreement(const EnvironmentPair& pair, int count) {
         const auto step1 = static_cast<float>(random() >> 40) * 0x1p-24f;
         double wide[2];
         acdf_widen(step0, step1, wide);
-        expect_same_draw(pair, uniform(random), uniform(random));
-        expect_same_draw(pair, double{step0}, double{step1});
-        expect_same_draw(pair, wide[0], wide[1]);
+        expect_same_sample(pair, uniform(random), uniform(random));
+        expect_same_sample(pair, double{step0}, double{step1});
+        expect_same_sample(pair, wide[0], wide[1]);
         float direction[3];
         direction_of(2.0 * M_PI * uniform(random), 2.0 * uniform(random) - 1.0, direction);
-        expect_same_density(pair, direction);
+        expect_same_pdf(pair, direction);
         for (float& d : direction) d *= 1.0003f; // not quite of unit length: it counts all the same
-        expect_same_density(pair, direction);
+        expect_same_pdf(pair, direction);
         direction_of(M_PI_4 * static_cast<double>(random() % 8), 1.0 - std::exp(-30.0 * uniform(random)),
                      direction);
-        expect_same_density(pair, direction); // at the seams of pieces, close to the poles
+        expect_same_pdf(pair, direction); // at the seams of pieces, close to the poles
     }
     // Exactly on the borders of cells, of the grids, and beside them.
     const AcdfEnvironment data = pair.plain.environment().data();
@@ -105,14 +105,14 @@ inline void expect_agreement(const EnvironmentPair& pair, int count) {
                    row = static_cast<std::uint32_t>(random() % data.rows);
         const double off = (uniform(random) - 0.5) * std::exp2(-20.0 - 10.0 * uniform(random));
         direction_at_border(grid, 0, column, off, uniform(random), direction);
-        expect_same_density(pair, direction);
+        expect_same_pdf(pair, direction);
         direction_at_border(grid, 1, row, off, uniform(random), direction);
-        expect_same_density(pair, direction);
+        expect_same_pdf(pair, direction);
         const double u[2] = {static_cast<double>(random() % 256) / 256.0,
                              static_cast<double>(random() % 65536) / 65535.0};
-        expect_same_draw(pair, u[0], u[1]);
-        expect_same_draw(pair, u[1], uniform(random));
-        expect_same_draw(pair, std::nextafter(u[1], 0.0), std::nextafter(u[0], 1.0));
+        expect_same_sample(pair, u[0], u[1]);
+        expect_same_sample(pair, u[1], uniform(random));
+        expect_same_sample(pair, std::nextafter(u[1], 0.0), std::nextafter(u[0], 1.0));
     }
 }
 

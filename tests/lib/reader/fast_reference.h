@@ -98,7 +98,7 @@ private:
 
     // The first of some parts at which their sum is above x; what is left of x, of the part, as a share.
     template <class Part>
-    static std::size_t drawn(double& u, double whole, std::size_t count, const Part& part) {
+    static std::size_t sampled(double& u, double whole, std::size_t count, const Part& part) {
         const double x = std::min(u * whole, std::nextafter(whole, 0.0));
         double below = 0.0;
         for (std::size_t i = 0; i < count; ++i) {
@@ -113,17 +113,17 @@ private:
     }
 
 public:
-    /// Draws a tile of the mixture: its number; p of the cell becomes its part of it.
+    /// Samples a tile of the mixture: its number; p of the cell becomes its part of it.
     std::size_t draw(const Rows& row, const Weights& w, double (&u)[2], Cell& cell) const {
         Mixed mix = mixed(w);
-        const std::size_t g = drawn(u[0], 32767.0 * mix.whole, groups(), [&](std::size_t i) {
+        const std::size_t g = sampled(u[0], 32767.0 * mix.whole, groups(), [&](std::size_t i) {
             double s = 0.0;
             for (std::size_t k = 0; k < mix.a.size(); ++k) s += mix.a[k] * group_steps(row[k], i);
             return s;
         });
         const double s = enter(row, mix, g);
-        const std::size_t i =
-            drawn(u[1], 255.0 * total_of(mix.b), 16, [&](std::size_t t) { return tile_sum(row, mix, 16 * g + t); });
+        const std::size_t i = sampled(u[1], 255.0 * total_of(mix.b), 16,
+                                      [&](std::size_t t) { return tile_sum(row, mix, 16 * g + t); });
         cell = tile_box(16 * g + i);
         cell.p = s * tile_sum(row, mix, 16 * g + i) / (32767.0 * 255.0 * mix.whole * total_of(mix.b));
         return 16 * g + i;
@@ -167,15 +167,15 @@ private:
     }
 
 public:
-    /// Draws a cell in the tile whose box `cell` is, or finds that of a square: its probability there.
-    double draw_in_grid(std::size_t tile, double (&u)[2], Cell& cell) const {
+    /// Samples a cell in the tile whose box `cell` is, or finds that of a square: its probability there.
+    double sample_in_grid(std::size_t tile, double (&u)[2], Cell& cell) const {
         const Grid grid = grid_of(tile, cell);
-        const auto draw_end = [&](double& x, std::size_t list, std::size_t count) {
-            return drawn(x, 255.0, count, [&](std::size_t i) { return end_steps(list, i); });
+        const auto sample_end = [&](double& x, std::size_t list, std::size_t count) {
+            return sampled(x, 255.0, count, [&](std::size_t i) { return end_steps(list, i); });
         };
-        const std::size_t line = draw_end(u[1], grid.at + 2, grid.count[1]);
+        const std::size_t line = sample_end(u[1], grid.at + 2, grid.count[1]);
         const std::size_t list = grid.at + 2 + grid.count[1] + line * grid.count[0];
-        const std::size_t column = draw_end(u[0], list, grid.count[0]);
+        const std::size_t column = sample_end(u[0], list, grid.count[0]);
         narrow(cell, 0, column, grid.step[0]);
         narrow(cell, 1, line, grid.step[1]);
         return end_steps(grid.at + 2, line) * end_steps(list, column) / 65025.0;

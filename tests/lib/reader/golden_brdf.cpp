@@ -12,18 +12,18 @@ namespace {
 
 const std::string kGoldenBrdfs = ACDF_TEST_DIR "/golden/v1.0/";
 
-class GoldenBrdf : public acdf_test::GoldenDraws {};
+class GoldenBrdf : public acdf_test::GoldenSamples {};
 
-TEST_P(GoldenBrdf, DrawsTheSameSamples) {
-    for (const acdf_test::GoldenDraw& line : lines_) {
+TEST_P(GoldenBrdf, SamplesTheSameSamples) {
+    for (const acdf_test::GoldenSample& line : lines_) {
         const auto s = file_.brdf().sample(line.given, line.u[0], line.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_EQ(s.direction[i], line.direction[i]);
         EXPECT_EQ(s.pdf, line.pdf);
     }
 }
 
-TEST_P(GoldenBrdf, HasThatDensityThere) {
-    for (const acdf_test::GoldenDraw& line : lines_) {
+TEST_P(GoldenBrdf, HasThatPdfThere) {
+    for (const acdf_test::GoldenSample& line : lines_) {
         EXPECT_GT(line.pdf, 0.0f);
         EXPECT_EQ(file_.brdf().pdf(line.given, line.direction), line.pdf);
     }

@@ -1,4 +1,4 @@
-// The numbers beside golden files: one sample a line, and the fixture of those that are drawn for a direction.
+// The numbers beside golden files: one sample a line, and the fixture of those that are sampled for a direction.
 #pragma once
 
 #include <acdf/reader.h>
@@ -31,15 +31,15 @@ std::vector<std::array<double, Count>> golden_numbers(const std::string& path) {
     return lines;
 }
 
-/// A draw for a normal or a view: `given  u0 u1  direction  pdf` on a line.
-struct GoldenDraw {
+/// A sample for a normal or a view: `given  u0 u1  direction  pdf` on a line.
+struct GoldenSample {
     float given[3];
     double u[2];
     float direction[3], pdf;
 };
 
-/// A golden file, named by the parameter, and the 96 draws beside it.
-class GoldenDraws : public ::testing::TestWithParam<const char*> {
+/// A golden file, named by the parameter, and the 96 samples beside it.
+class GoldenSamples : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {
         const std::string path = std::string(ACDF_TEST_DIR "/golden/v1.0/") + GetParam();
@@ -54,7 +54,7 @@ protected:
     }
 
     acdf::File file_;
-    std::vector<GoldenDraw> lines_;
+    std::vector<GoldenSample> lines_;
 };
 
 } // namespace acdf_test

@@ -60,50 +60,51 @@ TEST(Linked, environments) {
     Both both(golden("zlib"));
     const acdf::EnvironmentView sky = both.file.environment();
     const AcdfFile* file = both.handle.get();
-    ASSERT_EQ(acdf_draw_environment_array(file, both.u.data(), kCount, both.w.data(), both.p.data()), 1);
+    ASSERT_EQ(acdf_sample_environment_array(file, both.u.data(), kCount, both.w.data(), both.p.data()), 1);
     for (std::size_t i = 0; i < kCount; ++i) {
         float one[3];
         expect_same(sky.sample(both.u[2 * i], both.u[2 * i + 1]), &both.w[3 * i], both.p[i], i);
-        EXPECT_EQ(acdf_draw_environment(file, both.u[2 * i], both.u[2 * i + 1], one), both.p[i]);
+        EXPECT_EQ(acdf_sample_environment(file, both.u[2 * i], both.u[2 * i + 1], one), both.p[i]);
         EXPECT_EQ(std::memcmp(one, &both.w[3 * i], sizeof one), 0);
     }
     std::vector<float> asked = Both::directions(kCount, -1.0);
     asked[0] = NAN;
     std::vector<double> u(2 * kCount);
-    ASSERT_EQ(acdf_density_environment_array(file, asked.data(), kCount, both.p.data()), 1);
+    ASSERT_EQ(acdf_pdf_environment_array(file, asked.data(), kCount, both.p.data()), 1);
     ASSERT_EQ(acdf_invert_environment_array(file, asked.data(), kCount, u.data()), 1);
     EXPECT_EQ(both.p[0], 0.0f);
     EXPECT_TRUE(std::isnan(u[0]) && std::isnan(u[1]));
     for (std::size_t i = 0; i < kCount; ++i) {
         double expected[2];
         EXPECT_EQ(sky.pdf(&asked[3 * i]), both.p[i]) << i;
-        EXPECT_EQ(acdf_density_environment(file, &asked[3 * i]), both.p[i]) << i;
+        EXPECT_EQ(acdf_pdf_environment(file, &asked[3 * i]), both.p[i]) << i;
         if (sky.invert(&asked[3 * i], expected)) {
             EXPECT_EQ(std::memcmp(expected, &u[2 * i], sizeof expected), 0);
         }
     }
 }
 
-// Several samples a normal, and one: then they are drawn in waves.
+// Several samples a normal, and one: then they are sampled in waves.
 void expect_local_arrays(std::size_t each) {
     Both both(golden("local"));
     const acdf::LocalEnvironmentView sky = both.file.local();
     const AcdfFile* file = both.handle.get();
     const std::vector<float> normals = Both::directions(kCount / each + 1, -1.0);
     ASSERT_EQ(
-        acdf_draw_local_array(file, normals.data(), each, both.u.data(), kCount, both.w.data(), both.p.data()), 1);
+        acdf_sample_local_array(file, normals.data(), each, both.u.data(), kCount, both.w.data(), both.p.data()),
+        1);
     std::vector<float> again(kCount);
-    ASSERT_EQ(acdf_density_local_array(file, normals.data(), each, both.w.data(), kCount, again.data()), 1);
+    ASSERT_EQ(acdf_pdf_local_array(file, normals.data(), each, both.w.data(), kCount, again.data()), 1);
     std::vector<double> lit(kCount / each);
     ASSERT_EQ(acdf_irradiance_local_array(file, normals.data(), lit.size(), lit.data()), 1);
     for (std::size_t i = 0; i < kCount; ++i) {
         const float* normal = &normals[3 * (i / each)];
         float one[3] = {0.0f, 0.0f, 0.0f};
         expect_same(sky.sample(normal, both.u[2 * i], both.u[2 * i + 1]), &both.w[3 * i], both.p[i], i);
-        EXPECT_EQ(acdf_draw_local(file, normal, both.u[2 * i], both.u[2 * i + 1], one), both.p[i]);
+        EXPECT_EQ(acdf_sample_local(file, normal, both.u[2 * i], both.u[2 * i + 1], one), both.p[i]);
         EXPECT_EQ(std::memcmp(one, &both.w[3 * i], sizeof one), 0);
         EXPECT_EQ(again[i], sky.pdf(normal, &both.w[3 * i]));
-        EXPECT_EQ(again[i], acdf_density_local(file, normal, &both.w[3 * i]));
+        EXPECT_EQ(again[i], acdf_pdf_local(file, normal, &both.w[3 * i]));
         if (i / each < lit.size()) {
             EXPECT_EQ(lit[i / each], sky.irradiance(normal));
         }
@@ -126,10 +127,10 @@ TEST(Linked, brdfsAloneAndInWaves) {
             const std::vector<float> views = Both::directions(kCount, 0.0);
             std::vector<float> wave_w(3 * kCount), wave_p(kCount), densities(kCount), wave_densities(kCount);
             std::vector<double> u(2 * kCount), albedos(kCount);
-            acdf_draw_brdf_array(file, views.data(), each, both.u.data(), kCount, both.w.data(), both.p.data());
+            acdf_sample_brdf_array(file, views.data(), each, both.u.data(), kCount, both.w.data(), both.p.data());
             acdf_brdf_waves_draw(waves.get(), views.data(), each, both.u.data(), kCount, wave_w.data(),
                                  wave_p.data());
-            acdf_density_brdf_array(file, views.data(), each, both.w.data(), kCount, densities.data());
+            acdf_pdf_brdf_array(file, views.data(), each, both.w.data(), kCount, densities.data());
             acdf_brdf_waves_density(waves.get(), views.data(), each, both.w.data(), kCount, wave_densities.data());
             acdf_invert_brdf_array(file, views.data(), each, both.w.data(), kCount, u.data());
             acdf_albedo_brdf_array(file, views.data(), kCount, albedos.data());
@@ -138,7 +139,7 @@ TEST(Linked, brdfsAloneAndInWaves) {
                 double expected[2];
                 expect_same(brdf.sample(wo, both.u[2 * i], both.u[2 * i + 1]), &both.w[3 * i], both.p[i], i);
                 EXPECT_EQ(densities[i], brdf.pdf(wo, &both.w[3 * i]));
-                EXPECT_EQ(acdf_density_brdf(file, wo, &both.w[3 * i]), densities[i]);
+                EXPECT_EQ(acdf_pdf_brdf(file, wo, &both.w[3 * i]), densities[i]);
                 EXPECT_EQ(brdf.invert(wo, &both.w[3 * i], expected), !std::isnan(u[2 * i]));
                 if (!std::isnan(u[2 * i])) {
                     EXPECT_EQ(expected[0], u[2 * i]);
@@ -165,8 +166,8 @@ TEST(Linked, tables) {
     std::vector<std::uint32_t> index(std::size_t{indexed} * kCount, 0);
     for (std::size_t i = 0; i < index.size(); ++i) index[i] = i % 3 == 1 ? 1 : i == 9 ? 99 : 0;
     std::vector<double> x(sampled * kCount), p(kCount), again(kCount), u(sampled * kCount);
-    ASSERT_EQ(acdf_draw_table_array(file, index.data(), kEach, random.data(), kCount, x.data(), p.data()), 1);
-    ASSERT_EQ(acdf_density_table_array(file, index.data(), kEach, x.data(), kCount, again.data()), 1);
+    ASSERT_EQ(acdf_sample_table_array(file, index.data(), kEach, random.data(), kCount, x.data(), p.data()), 1);
+    ASSERT_EQ(acdf_pdf_table_array(file, index.data(), kEach, x.data(), kCount, again.data()), 1);
     ASSERT_EQ(acdf_invert_table_array(file, index.data(), kEach, x.data(), kCount, u.data()), 1);
     std::size_t drawn = 0;
     for (std::size_t i = 0; i < kCount; ++i) {
@@ -174,12 +175,12 @@ TEST(Linked, tables) {
         double one[ACDF_MAX_AXES];
         const double pdf = table.sample(at, &random[sampled * i], one);
         EXPECT_EQ(pdf, p[i]);
-        EXPECT_EQ(acdf_draw_table(file, at, &random[sampled * i], one), pdf);
+        EXPECT_EQ(acdf_sample_table(file, at, &random[sampled * i], one), pdf);
         if (pdf > 0.0) {
             ++drawn;
             EXPECT_EQ(std::memcmp(one, &x[sampled * i], 8 * sampled), 0);
             EXPECT_EQ(again[i], pdf);
-            EXPECT_EQ(acdf_density_table(file, at, one), pdf);
+            EXPECT_EQ(acdf_pdf_table(file, at, one), pdf);
             EXPECT_NEAR(u[sampled * i], random[sampled * i], 1e-6);
         } else {
             EXPECT_TRUE(std::isnan(x[sampled * i]) && std::isnan(u[sampled * i]));
@@ -193,29 +194,29 @@ TEST(Linked, otherKindsAreRefused) {
     float w[3] = {0.0f, 0.0f, 1.0f}, p = -7.0f;
     double u[2] = {0.5, 0.5}, x[2] = {-7.0, -7.0};
     const AcdfFile *e = sky.handle.get(), *b = brdf.handle.get();
-    EXPECT_EQ(acdf_draw_environment_array(b, u, 1, w, &p), 0);
-    EXPECT_EQ(acdf_density_environment_array(b, w, 1, &p), 0);
+    EXPECT_EQ(acdf_sample_environment_array(b, u, 1, w, &p), 0);
+    EXPECT_EQ(acdf_pdf_environment_array(b, w, 1, &p), 0);
     EXPECT_EQ(acdf_invert_environment_array(b, w, 1, x), 0);
-    EXPECT_EQ(acdf_draw_local_array(e, w, 1, u, 1, w, &p), 0);
-    EXPECT_EQ(acdf_density_local_array(e, w, 1, w, 1, &p), 0);
+    EXPECT_EQ(acdf_sample_local_array(e, w, 1, u, 1, w, &p), 0);
+    EXPECT_EQ(acdf_pdf_local_array(e, w, 1, w, 1, &p), 0);
     EXPECT_EQ(acdf_irradiance_local_array(e, w, 1, x), 0);
-    EXPECT_EQ(acdf_draw_brdf_array(e, w, 1, u, 1, w, &p), 0);
-    EXPECT_EQ(acdf_density_brdf_array(e, w, 1, w, 1, &p), 0);
+    EXPECT_EQ(acdf_sample_brdf_array(e, w, 1, u, 1, w, &p), 0);
+    EXPECT_EQ(acdf_pdf_brdf_array(e, w, 1, w, 1, &p), 0);
     EXPECT_EQ(acdf_invert_brdf_array(e, w, 1, w, 1, x), 0);
     EXPECT_EQ(acdf_albedo_brdf_array(e, w, 1, x), 0);
-    EXPECT_EQ(acdf_draw_table_array(e, nullptr, 1, u, 1, x, x), 0);
-    EXPECT_EQ(acdf_density_table_array(e, nullptr, 1, u, 1, x), 0);
+    EXPECT_EQ(acdf_sample_table_array(e, nullptr, 1, u, 1, x, x), 0);
+    EXPECT_EQ(acdf_pdf_table_array(e, nullptr, 1, u, 1, x), 0);
     EXPECT_EQ(acdf_invert_table_array(e, nullptr, 1, u, 1, x), 0);
     EXPECT_EQ(p, -7.0f);
     EXPECT_EQ(x[0], -7.0);
-    EXPECT_EQ(acdf_draw_environment(b, 0.5, 0.5, w), 0.0f);
-    EXPECT_EQ(acdf_density_environment(b, w), 0.0f);
-    EXPECT_EQ(acdf_draw_local(e, w, 0.5, 0.5, w), 0.0f);
-    EXPECT_EQ(acdf_density_local(e, w, w), 0.0f);
-    EXPECT_EQ(acdf_draw_brdf(e, w, 0.5, 0.5, w), 0.0f);
-    EXPECT_EQ(acdf_density_brdf(e, w, w), 0.0f);
-    EXPECT_EQ(acdf_draw_table(e, nullptr, u, x), 0.0);
-    EXPECT_EQ(acdf_density_table(e, nullptr, u), 0.0);
+    EXPECT_EQ(acdf_sample_environment(b, 0.5, 0.5, w), 0.0f);
+    EXPECT_EQ(acdf_pdf_environment(b, w), 0.0f);
+    EXPECT_EQ(acdf_sample_local(e, w, 0.5, 0.5, w), 0.0f);
+    EXPECT_EQ(acdf_pdf_local(e, w, w), 0.0f);
+    EXPECT_EQ(acdf_sample_brdf(e, w, 0.5, 0.5, w), 0.0f);
+    EXPECT_EQ(acdf_pdf_brdf(e, w, w), 0.0f);
+    EXPECT_EQ(acdf_sample_table(e, nullptr, u, x), 0.0);
+    EXPECT_EQ(acdf_pdf_table(e, nullptr, u), 0.0);
     EXPECT_EQ(acdf_table_sampled_axes(e), 0u);
     AcdfError error;
     EXPECT_EQ(acdf_brdf_waves(e, &error), nullptr);
@@ -232,13 +233,13 @@ TEST(Linked, noItemsAPlaceAreRefused) {
     const std::uint32_t index[ACDF_MAX_AXES] = {};
     const AcdfFile *l = light.handle.get(), *b = brdf.handle.get(), *t = table.handle.get();
     const std::vector<float> as_it_was = w;
-    EXPECT_EQ(acdf_draw_local_array(l, up.data(), 0, u.data(), 4, w.data(), p.data()), 0);
-    EXPECT_EQ(acdf_density_local_array(l, up.data(), 0, w.data(), 4, p.data()), 0);
-    EXPECT_EQ(acdf_draw_brdf_array(b, up.data(), 0, u.data(), 4, w.data(), p.data()), 0);
-    EXPECT_EQ(acdf_density_brdf_array(b, up.data(), 0, w.data(), 4, p.data()), 0);
+    EXPECT_EQ(acdf_sample_local_array(l, up.data(), 0, u.data(), 4, w.data(), p.data()), 0);
+    EXPECT_EQ(acdf_pdf_local_array(l, up.data(), 0, w.data(), 4, p.data()), 0);
+    EXPECT_EQ(acdf_sample_brdf_array(b, up.data(), 0, u.data(), 4, w.data(), p.data()), 0);
+    EXPECT_EQ(acdf_pdf_brdf_array(b, up.data(), 0, w.data(), 4, p.data()), 0);
     EXPECT_EQ(acdf_invert_brdf_array(b, up.data(), 0, w.data(), 4, x.data()), 0);
-    EXPECT_EQ(acdf_draw_table_array(t, index, 0, u.data(), 4, x.data(), x.data() + 20), 0);
-    EXPECT_EQ(acdf_density_table_array(t, index, 0, u.data(), 4, x.data()), 0);
+    EXPECT_EQ(acdf_sample_table_array(t, index, 0, u.data(), 4, x.data(), x.data() + 20), 0);
+    EXPECT_EQ(acdf_pdf_table_array(t, index, 0, u.data(), 4, x.data()), 0);
     EXPECT_EQ(acdf_invert_table_array(t, index, 0, u.data(), 4, x.data()), 0);
     AcdfBrdfWaves* const waves = acdf_brdf_waves(b, nullptr);
     ASSERT_TRUE(waves);
@@ -258,10 +259,10 @@ TEST(Linked, anIndexThatIsMissingIsRefused) {
     const AcdfFile* const t = table.handle.get();
     ASSERT_GT(acdf_table_indexed_axes(t), 0u);
     double u[ACDF_MAX_AXES] = {0.5, 0.5, 0.5}, x[ACDF_MAX_AXES] = {-7.0}, p = -7.0;
-    EXPECT_EQ(acdf_draw_table(t, nullptr, u, x), 0.0);
-    EXPECT_EQ(acdf_density_table(t, nullptr, u), 0.0);
-    EXPECT_EQ(acdf_draw_table_array(t, nullptr, 1, u, 1, x, &p), 0);
-    EXPECT_EQ(acdf_density_table_array(t, nullptr, 1, u, 1, &p), 0);
+    EXPECT_EQ(acdf_sample_table(t, nullptr, u, x), 0.0);
+    EXPECT_EQ(acdf_pdf_table(t, nullptr, u), 0.0);
+    EXPECT_EQ(acdf_sample_table_array(t, nullptr, 1, u, 1, x, &p), 0);
+    EXPECT_EQ(acdf_pdf_table_array(t, nullptr, 1, u, 1, &p), 0);
     EXPECT_EQ(acdf_invert_table_array(t, nullptr, 1, u, 1, x), 0);
     EXPECT_EQ(x[0], -7.0);
     EXPECT_EQ(p, -7.0);

@@ -231,7 +231,7 @@ TEST(LocalView, whatIsStoredIsTold) {
 }
 
 // By hand: at +x row 1 rules, of codes 200 and 255: columns [0, 3) have 200/255 of all, the rest is in tile 1.
-TEST(LocalView, handMadeDensities) {
+TEST(LocalView, handMadePdfs) {
     LocalSpec spec = shared_local();
     spec.tile_curves.clear(); // all tiles are cells
     spec.tree = {{CurveSpec{}}, {}};
@@ -259,8 +259,8 @@ TEST(LocalView, handMadeDensities) {
 // A light's part of the samples by hand: half of its flux above the horizon where its middle is on it.
 TEST(LocalView, handMadeLight) {
     LocalSpec spec = lit_local();
-    spec.lights[0].radius = 0.1f;
-    spec.lights[0].share = 2.0f;
+    spec.bright_tiles[0].radius = 0.1f;
+    spec.bright_tiles[0].share = 2.0f;
     const LoadedLocal loaded(spec);
     const double h[] = {0.8, 0.05, 0.0, -0.05, -0.1, -0.2};
     const double weight[] = {1.6, 2 * 0.15 * 0.15 / 0.4, 2 * 0.1 * 0.1 / 0.4, 2 * 0.05 * 0.05 / 0.4, 0.0, 0.0};
@@ -271,7 +271,7 @@ TEST(LocalView, handMadeLight) {
                             static_cast<float>(0.8 * h[i] - 0.6 * c)};
         AcdfLocalPoint source;
         acdf_local_at(&loaded.view().data(), n, &source);
-        EXPECT_NEAR(source.lights / source.length, weight[i], 1e-6) << h[i];
+        EXPECT_NEAR(source.bright_tiles / source.length, weight[i], 1e-6) << h[i];
         int lit = 0;
         for (int k = 0; k < 10000; ++k) {
             const auto s = loaded.view().sample(n, (k + 0.5) / 10000, 0.5);
@@ -280,7 +280,7 @@ TEST(LocalView, handMadeLight) {
             acdf_sphere_square(8, 8, s.direction, square, &column);
             lit += square[0] >= 3 && square[1] < 2;
         }
-        EXPECT_NEAR(lit / 10000.0, source.lights / source.sum, 2e-4) << h[i];
+        EXPECT_NEAR(lit / 10000.0, source.bright_tiles / source.sum, 2e-4) << h[i];
     }
 }
 

@@ -16,25 +16,25 @@ struct SplitSpec {
     std::uint32_t child[2]; ///< a split, or tile_flag | a tile
 };
 
-struct LightSpec {
+struct BrightTileSpec {
     float direction[3] = {0.6f, 0.0f, 0.8f};
     float radius = 2.0f, share = 0.25f;
     std::uint32_t tile = 0;
     std::array<std::uint32_t, 2> low{}, high{};
 };
 
-struct PlaceSplitSpec {
+struct VisibilitySplitSpec {
     float position, blend;
     std::uint32_t axis;
-    std::uint32_t part[2]; ///< a split, or place_row | a row
+    std::uint32_t part[2]; ///< a split, or visibility_row | a row
 };
-constexpr std::uint32_t place_row = 0x10000000;
+constexpr std::uint32_t visibility_row = 0x10000000;
 
 /// Chunk PLAC.
-struct PlacesSpec {
+struct VisibilitySpec {
     float low[3] = {-1.0f, -2.0f, 0.0f}, high[3] = {3.0f, 2.0f, 4.0f};
     float transform[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    std::vector<PlaceSplitSpec> splits;
+    std::vector<VisibilitySplitSpec> splits;
     std::uint32_t further_sets = 0;
     std::vector<std::uint16_t> columns;    ///< of each set one a split of tiles
     std::vector<std::uint16_t> set_of_row; ///< empty, or one a row
@@ -49,7 +49,7 @@ struct PlacesSpec {
         for (float x : low) put_float(out, x);
         for (float x : high) put_float(out, x);
         for (float x : transform) put_float(out, x);
-        for (const PlaceSplitSpec& split : splits) {
+        for (const VisibilitySplitSpec& split : splits) {
             put_float(out, split.position);
             put_float(out, split.blend);
             put32(out, split.axis | split.part[0] << 3);
@@ -75,9 +75,9 @@ struct LocalSpec {
     std::vector<Bytes> codes;                    ///< rows of one byte a split
     std::optional<FastSpec> fast;                ///< instead of these and of curves in tiles
     std::vector<BinSpec> bins;                   ///< root: the row, or a curve of `tree`; no_root: not stored
-    std::vector<LightSpec> lights;
+    std::vector<BrightTileSpec> bright_tiles;
     float cosine_share = 0.0f;
-    std::optional<PlacesSpec> places;
+    std::optional<VisibilitySpec> visibility;
     std::optional<PortalsSpec> portals;
     double total = 3.0;
     bool zlib = false;
@@ -127,8 +127,8 @@ struct LocalSpec {
     Bytes local_chunk() const {
         Bytes out;
         put_float(out, cosine_share);
-        put32(out, static_cast<std::uint32_t>(lights.size()));
-        for (const LightSpec& light : lights) {
+        put32(out, static_cast<std::uint32_t>(bright_tiles.size()));
+        for (const BrightTileSpec& light : bright_tiles) {
             for (float x : light.direction) put_float(out, x);
             put_float(out, light.radius);
             put_float(out, light.share);
@@ -158,7 +158,7 @@ struct LocalSpec {
             file.chunks.push_back({"GRID", fast->grid_chunk(), 1, zlib});
         }
         file.chunks.push_back({"LOCL", local_chunk(), 1, zlib});
-        if (places) file.chunks.push_back({"PLAC", places->encode(), 0, zlib});
+        if (visibility) file.chunks.push_back({"PLAC", visibility->encode(), 0, zlib});
         if (portals) file.chunks.push_back({"PORT", portals->encode(), 0, zlib});
         return file;
     }
@@ -204,10 +204,10 @@ inline LocalSpec fast_local() {
 inline LocalSpec fast_lit_local() {
     LocalSpec spec = fast_local();
     spec.fast->rows[0].tiles = {100, 100, 255};
-    spec.lights.resize(1);
-    spec.lights[0].tile = 1;
-    spec.lights[0].low = {3, 0};
-    spec.lights[0].high = {8, 2};
+    spec.bright_tiles.resize(1);
+    spec.bright_tiles[0].tile = 1;
+    spec.bright_tiles[0].low = {3, 0};
+    spec.bright_tiles[0].high = {8, 2};
     return spec;
 }
 
@@ -215,39 +215,40 @@ inline LocalSpec fast_lit_local() {
 inline LocalSpec lit_local() {
     LocalSpec spec = shared_local();
     spec.codes = {{100, 0}, {255, 77}}; // at the last split; at the one above it
-    spec.lights.resize(1);
-    spec.lights[0].tile = 1;
-    spec.lights[0].low = {3, 0};
-    spec.lights[0].high = {8, 2};
+    spec.bright_tiles.resize(1);
+    spec.bright_tiles[0].tile = 1;
+    spec.bright_tiles[0].low = {3, 0};
+    spec.bright_tiles[0].high = {8, 2};
     return spec;
 }
 
-/// lit_local with four places: x < 1; above it y < 0.5; the rest, by the z of normals. Both splits of tiles are
+/// lit_local with four visibility: x < 1; above it y < 0.5; the rest, by the z of normals. Both splits of tiles are
 /// told apart.
-inline LocalSpec placed_local() {
+inline LocalSpec visibility_local() {
     LocalSpec spec = lit_local();
-    spec.places.emplace();
-    spec.places->splits = {{1.0f, 0.25f, 0, {place_row, 1}},
-                           {0.5f, 0.5f, 1, {place_row | 1, 2}},
-                           {0.1f, 0.2f, 5, {place_row | 2, place_row | 3}}};
-    spec.places->columns = {0, 1};
-    spec.places->rows = {{240, 30, 200, 60}, {200, 255, 1, 254}, {0, 100, 128, 9}, {90, 17, 30, 250}};
+    spec.visibility.emplace();
+    spec.visibility->splits = {{1.0f, 0.25f, 0, {visibility_row, 1}},
+                               {0.5f, 0.5f, 1, {visibility_row | 1, 2}},
+                               {0.1f, 0.2f, 5, {visibility_row | 2, visibility_row | 3}}};
+    spec.visibility->columns = {0, 1};
+    spec.visibility->rows = {{240, 30, 200, 60}, {200, 255, 1, 254}, {0, 100, 128, 9}, {90, 17, 30, 250}};
     return spec;
 }
 
-/// placed_local with one column alone, of the first split in some cells and of the second in others.
+/// visibility_local with one column alone, of the first split in some cells and of the second in others.
 inline LocalSpec regional_local() {
-    LocalSpec spec = placed_local();
-    spec.places->further_sets = 1;
-    spec.places->columns = {0, 0xFFFF, 0xFFFF, 0};
-    spec.places->set_of_row = {0, 1, 1, 0};
-    for (Bytes& row : spec.places->rows) row.resize(3);
+    LocalSpec spec = visibility_local();
+    spec.visibility->further_sets = 1;
+    spec.visibility->columns = {0, 0xFFFF, 0xFFFF, 0};
+    spec.visibility->set_of_row = {0, 1, 1, 0};
+    for (Bytes& row : spec.visibility->rows) row.resize(3);
     return spec;
 }
 
-/// placed_local with two windows in a wall at x = 4 and one in a wall at y = 3; the last place draws by rows alone.
+/// visibility_local with two windows in a wall at x = 4 and one in a wall at y = 3; the last place samples by rows
+/// alone.
 inline LocalSpec windowed_local() {
-    LocalSpec spec = placed_local();
+    LocalSpec spec = visibility_local();
     spec.portals.emplace();
     spec.portals->portals = {
         {{4, -1, 0.5f}, {1, 2}, 0}, {{4, 0.5f, 1}, {1.5f, 1.5f}, 0}, {{1.5f, 3, 1}, {2, 1}, 1}};

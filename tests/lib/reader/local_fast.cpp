@@ -45,7 +45,7 @@ struct FastFile {
 };
 
 TEST(FastShape, AgreesWithTheSlowDecoder) {
-    int drawn = 0, groups = 0;
+    int sampled = 0, groups = 0;
     for (std::uint32_t seed = 0; seed < kFastFiles; ++seed) {
         const FastFile loaded(random_fast(seed), seed % 3 != 0);
         const Local reference(loaded.bytes);
@@ -69,7 +69,7 @@ TEST(FastShape, AgreesWithTheSlowDecoder) {
                 const double cosine = (n[0] * d[0] + n[1] * d[1] + n[2] * d[2]) / std::hypot(n[0], n[1], n[2]);
                 const double pdf = (1 - sigma) * expected.pdf + sigma * std::max(0.0, cosine) / pi;
                 ASSERT_NEAR(s.pdf / pdf, 1.0, 1e-5);
-                ++drawn;
+                ++sampled;
             }
             const Normal any = random_direction(rng);
             float f[3];
@@ -78,7 +78,7 @@ TEST(FastShape, AgreesWithTheSlowDecoder) {
             ASSERT_NEAR(view.pdf(normal.data(), f), expected, 1e-5 * expected);
         }
     }
-    EXPECT_GT(drawn, 10000);
+    EXPECT_GT(sampled, 10000);
     EXPECT_GT(groups, 30);
 }
 
@@ -129,7 +129,7 @@ TEST(FastShape, IntegratesToOne) {
                     for (std::uint32_t column = 0; column < options.columns; ++column) {
                         AcdfRange range[2] = {{column, column + 1, 0.0}, {row, row + 1, 0.0}};
                         const double middle[2] = {0.5, 0.5};
-                        const acdf::DirectionSample s = acdf_grid_place(&grid, range, middle, 1.0);
+                        const acdf::DirectionSample s = acdf_grid_position(&grid, range, middle, 1.0);
                         sum += acdf_grid_solid_angle(&grid, range) * double{view.pdf(point, s.direction)};
                     }
                 EXPECT_NEAR(sum, 1.0, 1e-6) << seed;
@@ -138,7 +138,7 @@ TEST(FastShape, IntegratesToOne) {
 }
 
 // By hand: at +x row 1 alone, 200 of 255 in tile 0; there 110 of 255 in line 2, the second cell of which has 80.
-TEST(FastShape, HandMadeDensities) {
+TEST(FastShape, HandMadePdfs) {
     const FastFile loaded(fast_local(), true);
     const acdf::LocalEnvironmentView view = loaded.file.local();
     const float x[3] = {7.0f, 0.0f, 0.0f};
@@ -226,7 +226,7 @@ TEST(FastShape, TablesFindTheTilesOfSquaresThatAreAllCut) {
     find_tiles_where_all_is_cut(127, 101, 1);
 }
 
-// A draw for a normal that serves once is that at its point, to the bit: also where lights end.
+// A sample for a normal that serves once is that at its point, to the bit: also where bright tiles end.
 TEST(FastShape, DrawsOfANormalAreThoseOfItsPoint) {
     int lit = 0;
     for (std::uint32_t seed = 0; seed < kFastFiles; ++seed) {
@@ -236,9 +236,9 @@ TEST(FastShape, DrawsOfANormalAreThoseOfItsPoint) {
         for (int i = 0; i < 60; ++i) {
             const Normal normal = normal_of_any_length(rng);
             const AcdfLocalPoint point = view.at(normal.data());
-            const double border = point.sum > 0.0 ? point.lights / point.sum : 0.5;
+            const double border = point.sum > 0.0 ? point.bright_tiles / point.sum : 0.5;
             double below = border;
-            lit += point.lights > 0.0;
+            lit += point.bright_tiles > 0.0;
             for (const double u0 :
                  {0.0, 1.0, border, below = std::nextafter(below, 0.0), below = std::nextafter(below, 0.0),
                                     uniform(rng) * border, uniform(rng)}) {
@@ -259,12 +259,12 @@ TEST(FastShape, StrataStayStrata) {
     const AcdfLocalPoint point = view.at(n);
     ASSERT_EQ(point.what, ACDF_LOCAL_FAST);
     double before = -1.0;
-    for (int i = 0; i <= 100000; ++i) { // tiles are drawn in their order within a group, groups in theirs
+    for (int i = 0; i <= 100000; ++i) { // tiles are sampled in their order within a group, groups in theirs
         double u[2] = {0.0, 0.5};
         const double whole = 32767.0 * point.fast.whole;
         AcdfFastShare share;
         const std::uint32_t tile =
-            acdf_fast_draw_tile(&view.data().fast, &point.fast, acdf_fast_scaled(i / 100000.0, whole), u, &share);
+            acdf_fast_sample_tile(&view.data().fast, &point.fast, acdf_fast_scaled(i / 100000.0, whole), u, &share);
         ASSERT_GE(double(tile / ACDF_FAST_GROUP), before);
         ASSERT_GE(u[0], 0.0);
         ASSERT_LE(u[0], 1.0);

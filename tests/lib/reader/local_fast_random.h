@@ -1,5 +1,5 @@
 // Random local environments of the fast shape: any splits, sums and grids, dark lines, cells, tiles and groups,
-// lights, bins that are dark or not stored, all forms of bins.
+// bright tiles, bins that are dark or not stored, all forms of bins.
 #pragma once
 
 #include "tests/lib/reader/local_random.h"
@@ -151,7 +151,7 @@ private:
     FastRow row(const LocalSpec& spec) {
         const std::size_t groups = (spec.tiles + 15) / 16;
         std::vector<bool> dark(spec.tiles, false), dark_group(groups, true);
-        for (const LightSpec& light : spec.lights) dark[light.tile] = true;
+        for (const BrightTileSpec& light : spec.bright_tiles) dark[light.tile] = true;
         for (std::size_t t = 0; t < dark.size(); ++t) dark_group[t / 16] = dark_group[t / 16] && dark[t];
         FastRow out;
         const std::vector<std::uint32_t> list = ends(groups, 32767, dark_group);
@@ -166,8 +166,8 @@ private:
     }
 
     void add_light(LocalSpec& spec, std::uint32_t tile) {
-        if (spec.lights.size() + 1 >= spec.tiles) return; // one tile at least is none
-        LightSpec light;
+        if (spec.bright_tiles.size() + 1 >= spec.tiles) return; // one tile at least is none
+        BrightTileSpec light;
         const double z = 2.0 * uniform() - 1.0, phi = 2.0 * pi * uniform(), sine = std::sqrt(1.0 - z * z);
         light.direction[0] = static_cast<float>(sine * std::cos(phi));
         light.direction[1] = static_cast<float>(sine * std::sin(phi));
@@ -177,7 +177,7 @@ private:
         light.tile = tile;
         light.low = boxes_[tile].low;
         light.high = boxes_[tile].high;
-        spec.lights.push_back(light);
+        spec.bright_tiles.push_back(light);
     }
 
     std::mt19937 rng_;

@@ -1,5 +1,5 @@
 // Random local environments that use everything the format has for them: any splits, rows and codebooks, tiles with
-// trees, as cells and as lights, bins that are dark or not stored, all forms of bins.
+// trees, as cells and as bright tiles, bins that are dark or not stored, all forms of bins.
 #pragma once
 
 #include "tests/lib/reader/local_builder.h"
@@ -127,7 +127,7 @@ private:
 
     // Rows give it nothing, at a split anywhere on the way.
     void add_light(LocalSpec& spec, std::uint32_t tile) {
-        LightSpec light;
+        BrightTileSpec light;
         const double z = 2.0 * uniform() - 1.0, phi = 2.0 * pi * uniform(), sine = std::sqrt(1.0 - z * z);
         light.direction[0] = static_cast<float>(sine * std::cos(phi));
         light.direction[1] = static_cast<float>(sine * std::sin(phi));
@@ -144,14 +144,14 @@ private:
                 path[below(3) == 0 ? below(static_cast<std::uint32_t>(path.size())) : path.size() - 1];
             row[split] = upper ? 255 : 0;
         }
-        spec.lights.push_back(light);
+        spec.bright_tiles.push_back(light);
         if (all_dark(spec)) return; // else this one takes from an earlier light the split that hides it
-        spec.lights.pop_back();
+        spec.bright_tiles.pop_back();
         spec.codes = before;
     }
 
     using Path = std::vector<std::pair<std::uint32_t, bool>>; // splits, and whether it is their upper part
-    static Path path_to(const LocalSpec& spec, const LightSpec& light) {
+    static Path path_to(const LocalSpec& spec, const BrightTileSpec& light) {
         Path path;
         for (std::uint32_t node = 0; !(node & tile_flag);) {
             const SplitSpec& split = spec.splits[node];
@@ -163,7 +163,7 @@ private:
     }
 
     static bool all_dark(const LocalSpec& spec) {
-        for (const LightSpec& light : spec.lights) {
+        for (const BrightTileSpec& light : spec.bright_tiles) {
             const Path path = path_to(spec, light);
             for (const Bytes& row : spec.codes)
                 if (std::none_of(path.begin(), path.end(),

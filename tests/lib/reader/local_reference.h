@@ -58,14 +58,14 @@ public:
         return before + 3 * r + x;
     }
 
-    /// What a normal draws from.
+    /// What a normal samples from.
     struct Source {
         enum { nothing, tree, blend } what = nothing;
         std::size_t root = 0;
         std::vector<std::size_t> row; // of the mixture
         std::vector<double> w;
         std::vector<double> light; // weights
-        double lights = 0.0, sum = 0.0, length = 1.0;
+        double bright_tiles = 0.0, sum = 0.0, length = 1.0;
     };
 
     Source source(const Vector& n) const {
@@ -92,9 +92,10 @@ public:
             out.w.push_back(w);
         }
         out.length = std::hypot(served.n[0], served.n[1], served.n[2]);
-        for (std::size_t k = 0; k < light_count(); ++k) out.light.push_back(light_weight(k, served.n, out.length));
-        for (const double v : out.light) out.lights += v;
-        out.sum = out.lights + total_of(out.w);
+        for (std::size_t k = 0; k < bright_tile_count(); ++k)
+            out.light.push_back(light_weight(k, served.n, out.length));
+        for (const double v : out.light) out.bright_tiles += v;
+        out.sum = out.bright_tiles + total_of(out.w);
         if (out.sum == 0.0) out.what = Source::nothing;
         return out;
     }
@@ -109,7 +110,7 @@ public:
             walk_from(source.root, s.cell, [&](const Curve& c) { return draw(c, u); });
             s.cell.p = std::max(s.cell.p, std::ldexp(1.0, -1000));
         } else {
-            draw_blend(source, u, s.cell);
+            sample_blend(source, u, s.cell);
         }
         place(s, u);
         return s;
@@ -169,7 +170,7 @@ private:
 
     bool stored(std::size_t bin) const { return number(bins_, 8 * bin, 4) != 0xFFFFFFFF; }
     double share(std::size_t bin) const { return f32(bins_, 8 * bin + 4); }
-    std::size_t light_count() const { return number(local_, 4, 4); }
+    std::size_t bright_tile_count() const { return number(local_, 4, 4); }
     static std::size_t light_at(std::size_t k) { return 8 + 40 * k; }
 
     static double total_of(const std::vector<double>& w) {
@@ -203,10 +204,10 @@ private:
     }
 
     // p times that of the cell within the tile.
-    void draw_in_tile(std::size_t tile, double (&u)[2], Cell& cell) const {
+    void sample_in_tile(std::size_t tile, double (&u)[2], Cell& cell) const {
         const double least = std::ldexp(1.0, -1000), p = std::max(cell.p, least);
         if (!sums_.empty()) {
-            cell.p = std::max(p * fast().draw_in_grid(tile, u, cell), least);
+            cell.p = std::max(p * fast().sample_in_grid(tile, u, cell), least);
             return;
         }
         cell.p = 1.0;
@@ -243,9 +244,9 @@ private:
         return out;
     }
 
-    void draw_blend(const Source& source, double (&u)[2], Cell& cell) const {
+    void sample_blend(const Source& source, double (&u)[2], Cell& cell) const {
         double x = u[0] * source.sum;
-        if (x < source.lights || source.w.empty()) {
+        if (x < source.bright_tiles || source.w.empty()) {
             std::size_t k = 0;
             double before = 0.0;
             for (std::size_t i = 0; i < source.light.size(); ++i) {
@@ -258,13 +259,13 @@ private:
             u[0] = std::min(std::max((x - before) / source.light[k], 0.0), 1.0);
             cell = light_box(k);
             cell.p = source.light[k] / source.sum;
-            draw_in_tile(number(local_, light_at(k) + 20, 4), u, cell);
+            sample_in_tile(number(local_, light_at(k) + 20, 4), u, cell);
             return;
         }
-        u[0] = std::min(std::max((x - source.lights) / (source.sum - source.lights), 0.0), 1.0);
+        u[0] = std::min(std::max((x - source.bright_tiles) / (source.sum - source.bright_tiles), 0.0), 1.0);
         if (!sums_.empty()) {
             const std::size_t tile = fast().draw(source.row, source.w, u, cell);
-            draw_in_tile(tile, u, cell);
+            sample_in_tile(tile, u, cell);
             cell.p = std::max(total_of(source.w) / source.sum * cell.p, std::ldexp(1.0, -1000));
             return;
         }
@@ -285,7 +286,7 @@ private:
             node = s.child[up];
         }
         cell.p = std::max(p / whole, std::ldexp(1.0, -1000));
-        draw_in_tile(node - 0x8000, u, cell);
+        sample_in_tile(node - 0x8000, u, cell);
         cell.p = std::max(whole / source.sum * cell.p, std::ldexp(1.0, -1000));
     }
 

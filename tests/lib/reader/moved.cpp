@@ -52,14 +52,14 @@ struct Number {
 std::vector<double> told(const acdf::EnvironmentView& view, const Number& n) {
     const acdf::DirectionSample s = view.sample(n.u0, n.u1);
     auto out = told(s, view.pdf(s.direction));
-    out.insert(out.end(), {view.total(), double{view.recommended_share()}});
+    out.insert(out.end(), {view.total(), double{view.recommended_light_share()}});
     return out;
 }
 std::vector<double> told(const acdf::LocalEnvironmentView& view, const Number& n) {
     const AcdfLocalPoint point = view.at(n.position, n.normal);
     const acdf::DirectionSample s = view.sample(point, n.u0, n.u1);
     auto out = told(s, view.pdf(point, s.direction));
-    out.insert(out.end(), {view.irradiance(n.normal), double{view.recommended_share(n.normal)}});
+    out.insert(out.end(), {view.irradiance(n.normal), double{view.recommended_light_share(n.normal)}});
     return out;
 }
 std::vector<double> told(const acdf::BrdfView& view, const Number& n) {
@@ -73,7 +73,7 @@ std::vector<double> told(const acdf::TableView& view, const Number& n) {
     const double u[ACDF_MAX_AXES] = {n.u0, n.u1, n.u1, n.u0, n.u0, n.u1};
     std::vector<double> out(ACDF_MAX_AXES);
     const double density = view.sample(index, u, out.data());
-    out.insert(out.end(), {density, view.pdf(index, out.data()), double{view.recommended_share(index)}});
+    out.insert(out.end(), {density, view.pdf(index, out.data()), double{view.recommended_light_share(index)}});
     return out;
 }
 
@@ -96,7 +96,7 @@ void expect_the_same_moved(std::optional<acdf::File>& file, std::vector<std::uin
     for (std::size_t i = 0; i < numbers.size(); ++i) ASSERT_EQ(told(moved, numbers[i]), before[i]) << i;
 }
 
-TEST(MovedViews, DrawWhatTheyDrew) {
+TEST(MovedViews, SampleWhatTheyDrew) {
     int kinds[8] = {};
     const auto expect = [&](const std::vector<std::uint8_t>& golden) {
         for (const bool tables : {true, false}) {

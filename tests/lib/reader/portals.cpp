@@ -1,4 +1,4 @@
-// Portals: what is drawn through windows, from files written by hand.
+// Portals: what is sampled through windows, from files written by hand.
 #include "tests/lib/reader/local_loaded.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ constexpr float kNormalsInside[][3] = {{1, 0, 0}, {0.6f, 0.3f, 0.4f}, {0.1f, -0.
 constexpr float kInside[][3] = {{0, 0, 1},       {2, -1, 1}, {2, 1.5f, 1}, {1.1f, 0.2f, 1},
                                 {0.9f, 0.6f, 2}, {3, 2, 4},  {3, 1, 1.5f}, {2.9f, -0.5f, 1.5f}};
 
-/// Rounding may carry what is drawn at the border of a square to the next one: the density is that of the
+/// Rounding may carry what is sampled at the border of a square to the next one: the density is that of the
 /// direction.
 TEST(Portals, SamplesHaveTheDensityThatIsFoundForThem) {
     float share = 0.0f;
@@ -30,12 +30,12 @@ TEST(Portals, SamplesHaveTheDensityThatIsFoundForThem) {
         for (const auto& n : kNormalsInside)
             for (const auto& x : kInside) {
                 const AcdfLocalPoint point = loaded.view().at(x, n);
-                seen += point.windows.count;
+                seen += point.visible_portals.count;
                 for (int i = 0; i < 300; ++i) {
                     const double u0 = double(random() >> 11) * 0x1p-53, u1 = double(random() >> 11) * 0x1p-53;
                     const acdf::DirectionSample s = loaded.view().sample(point, u0, u1);
                     EXPECT_GT(s.pdf, 0.0f);
-                    if (point.windows.count > 0) {
+                    if (point.visible_portals.count > 0) {
                         EXPECT_EQ(loaded.view().pdf(point, s.direction), s.pdf);
                     }
                 }
@@ -44,7 +44,7 @@ TEST(Portals, SamplesHaveTheDensityThatIsFoundForThem) {
     }
 }
 
-/// Directions that a row never draws are drawn through no window alone, and what a row draws stays so.
+/// Directions that a row never samples are sampled through no window alone, and what a row samples stays so.
 TEST(Portals, NothingThatANormalSeesIsLost) {
     const LoadedLocal loaded(windowed_local());
     std::mt19937_64 random(8);
@@ -99,7 +99,7 @@ TEST(Portals, DirectionsFallWhereTheDensitySays) {
     const struct { int position, normal; } cases[] = {{0, 0}, {1, 1}, {3, 3}, {6, 0}};
     for (const auto& c : cases) {
         const AcdfLocalPoint point = loaded.view().at(kInside[c.position], kNormalsInside[c.normal]);
-        ASSERT_GT(point.windows.count, 0) << c.position;
+        ASSERT_GT(point.visible_portals.count, 0) << c.position;
         const Histogram expected = expected_of(loaded.view(), point);
         double whole = 0.0;
         for (const double p : expected.of) whole += p;
@@ -128,7 +128,8 @@ TEST(Portals, DirectionsFallWhereTheDensitySays) {
     }
 }
 
-/// Strata of random numbers stay together: next to each other, u draw directions of the same piece or of the next.
+/// Strata of random numbers stay together: next to each other, u sample directions of the same piece or of the
+/// next.
 TEST(Portals, NumbersAreClampedAndAtTheEndsSafe) {
     const LoadedLocal loaded(windowed_local());
     const AcdfLocalPoint point = loaded.view().at(kInside[0], kNormalsInside[0]);
@@ -143,7 +144,7 @@ TEST(Portals, NumbersAreClampedAndAtTheEndsSafe) {
     for (const auto& d : bad) EXPECT_EQ(loaded.view().pdf(point, d), 0.0f);
 }
 
-/// Cells without light stand between those with light, and at the ends: nothing is drawn there, whatever the
+/// Cells without light stand between those with light, and at the ends: nothing is sampled there, whatever the
 /// numbers.
 TEST(Portals, NothingIsDrawnInCellsWithoutLight) {
     LocalSpec spec = windowed_local();
@@ -153,9 +154,9 @@ TEST(Portals, NothingIsDrawnInCellsWithoutLight) {
     for (const auto& n : kNormalsInside)
         for (const auto& x : kInside) {
             const AcdfLocalPoint point = loaded.view().at(x, n);
-            if (point.windows.count == 0) continue;
+            if (point.visible_portals.count == 0) continue;
             ++seen;
-            const double row = point.windows.of_row;
+            const double row = point.visible_portals.of_row;
             for (double u0 : {row, row + 0x1p-53, 0.5 + 0.5 * row, 0.75 + 0.25 * row, 1.0 - 0x1p-24, 1.0})
                 for (double u1 : {0.0, 0x1p-30, 0.25, 0.5, 0.75, 1.0 - 0x1p-53, 1.0}) {
                     const acdf::DirectionSample s = loaded.view().sample(point, u0, u1);
@@ -177,22 +178,22 @@ TEST(Portals, RoundingIsNoLight) {
     const LoadedLocal loaded(spec);
     for (int i = 0; i < 100; ++i) {
         const float x[] = {0, -0.002f * static_cast<float>(i), 1};
-        EXPECT_EQ(loaded.view().at(x, kNormalsInside[0]).windows.count, 0) << i;
+        EXPECT_EQ(loaded.view().at(x, kNormalsInside[0]).visible_portals.count, 0) << i;
     }
     spec.portals->maps[0].light[10] = 1;
     const float x[] = {0, 0, 1};
-    EXPECT_EQ(LoadedLocal(spec).view().at(x, kNormalsInside[0]).windows.count, 1);
+    EXPECT_EQ(LoadedLocal(spec).view().at(x, kNormalsInside[0]).visible_portals.count, 1);
 }
 
-/// A place that draws by its row alone, one behind a wall, one outside, and a normal alone see no windows.
-TEST(Portals, WhoSeesNoWindowDrawsByItsRow) {
-    const LoadedLocal loaded(windowed_local()), rows(placed_local());
+/// A place that samples by its row alone, one behind a wall, one outside, and a normal alone see no windows.
+TEST(Portals, PositionsWithoutAPortalSampleTheirRow) {
+    const LoadedLocal loaded(windowed_local()), rows(visibility_local());
     const struct {
         float x[3], n[3];
     } cases[] = {{{2, 1.5f, 1}, {0, 0, 1}}, {{0, 0, 1}, {-1, -1, 0}}, {{9, 0, 1}, {1, 0, 0}}};
     for (const auto& c : cases) {
         const AcdfLocalPoint point = loaded.view().at(c.x, c.n), row = rows.view().at(c.x, c.n);
-        EXPECT_EQ(point.windows.count, 0);
+        EXPECT_EQ(point.visible_portals.count, 0);
         const acdf::DirectionSample a = loaded.view().sample(point, 0.3, 0.7),
                                     b = rows.view().sample(row, 0.3, 0.7);
         EXPECT_EQ(a.pdf, b.pdf);

@@ -24,7 +24,7 @@ struct PortalsSpec {
     std::uint32_t size = 4, pieces = 2;
     std::vector<PortalSpec> portals;
     std::vector<PortalMapSpec> maps;
-    std::vector<Bytes> rows; ///< one a row of places
+    std::vector<Bytes> rows; ///< one a row of visibility cells
 
     Bytes encode() const {
         Bytes out;

@@ -22,9 +22,9 @@ using namespace acdf_test::products;
 namespace {
 
 // To the bit, with and without slopes in cells, for random numbers of every kind.
-TEST(Product, DensityIsExactlyThatOfTheSamples) {
+TEST(Product, PdfIsExactlyThatOfTheSamples) {
     const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-24, 1.0 - 0x1p-53, 0x1p-30, 0x1p-1000, NAN, -1.0, 2.0};
-    int drawn = 0, all = 0;
+    int sampled = 0, all = 0;
     for (const bool tilts : {false, true})
         each_point(tilts, [&](const LoadedLocal&, const TestLobe&, const Sampler& sampler,
                               const Sampler::Point& point, const std::string& name, std::mt19937_64& rng) {
@@ -35,18 +35,18 @@ TEST(Product, DensityIsExactlyThatOfTheSamples) {
                 ASSERT_TRUE(std::isfinite(s.pdf) && s.pdf >= 0.0f) << name;
                 ++all;
                 if (s.pdf == 0.0f) continue;
-                ++drawn;
+                ++sampled;
                 ASSERT_EQ(sampler.pdf(point, s.direction), s.pdf) << name << ", " << u0 << ' ' << u1;
                 ASSERT_NEAR(std::hypot(s.direction[0], s.direction[1], s.direction[2]), 1.0, 1e-6) << name;
             }
         });
-    EXPECT_GT(drawn, all * 0.98); // the rest: views and light nearly opposite, whose half-vector is lost
+    EXPECT_GT(sampled, all * 0.98); // the rest: views and light nearly opposite, whose half-vector is lost
 }
 
-// Where a part is a light's own tile, no row of places gives it anything.
-TEST(Product, DensityIsThatOfTheSamplesAtPlaces) {
-    int drawn = 0, of_lights = 0;
-    for (const LocalSpec& spec : {placed_local(), regional_local(), windowed_local()}) {
+// Where a part is a bright tile, no row of visibility cells gives it anything.
+TEST(Product, PdfIsThatOfTheSamplesAtPositions) {
+    int sampled = 0, of_lights = 0;
+    for (const LocalSpec& spec : {visibility_local(), regional_local(), windowed_local()}) {
         const LoadedLocal loaded(spec);
         std::mt19937_64 rng(3);
         for (int i = 0; i < 200; ++i) {
@@ -59,13 +59,13 @@ TEST(Product, DensityIsThatOfTheSamplesAtPlaces) {
             for (int k = 0; k < 100; ++k) {
                 const acdf::ProductSample s = sampler.sample(point, uniform(rng), uniform(rng));
                 if (s.pdf == 0.0f) continue;
-                ++drawn;
+                ++sampled;
                 of_lights += s.pdf > 20.0f;
                 ASSERT_EQ(sampler.pdf(point, s.direction), s.pdf) << i;
             }
         }
     }
-    EXPECT_GT(drawn, 30000);
+    EXPECT_GT(sampled, 30000);
     EXPECT_GT(of_lights, 0);
 }
 
@@ -78,7 +78,7 @@ TEST(Product, PointsAreTheSameInAnyMemory) {
         const acdf::SurfaceFrame frame = acdf::surface_frame(random_normal(rng).v);
         const Vector wo = random_view(rng, frame);
         for (const Sampler& sampler : {Sampler(loaded.light().environment, lobe), Sampler(loaded.light(), lobe)}) {
-            std::vector<acdf::ProductSample> drawn[2]; // and densities, without directions
+            std::vector<acdf::ProductSample> sampled[2]; // and densities, without directions
             for (const int byte : {0, 1}) {
                 alignas(Sampler::Point) unsigned char memory[sizeof(Sampler::Point)];
                 std::memset(memory, byte, sizeof memory);
@@ -86,11 +86,11 @@ TEST(Product, PointsAreTheSameInAnyMemory) {
                 std::mt19937_64 numbers(7);
                 for (int i = 0; i < 100; ++i) {
                     const double u0 = uniform(numbers), u1 = uniform(numbers);
-                    drawn[byte].push_back(sampler.sample(point, u0, u1));
-                    drawn[byte].push_back({{}, sampler.pdf(point, random_normal(numbers).v)});
+                    sampled[byte].push_back(sampler.sample(point, u0, u1));
+                    sampled[byte].push_back({{}, sampler.pdf(point, random_normal(numbers).v)});
                 }
             }
-            ASSERT_EQ(std::memcmp(drawn[0].data(), drawn[1].data(), 200 * sizeof drawn[0][0]), 0) << seed;
+            ASSERT_EQ(std::memcmp(sampled[0].data(), sampled[1].data(), 200 * sizeof sampled[0][0]), 0) << seed;
         }
     }
 }
@@ -173,11 +173,12 @@ TEST(Product, SeveralSamplesOfFaintPartsAreThoseOfSingleCalls) {
             const double scales[] = {1.0, 0.0, 0x1p-1074, 0x1p-1060, 0x1p-1000};
             for (int i = 0; i < point.cut.count; ++i) {
                 AcdfCutPart& part = point.cut.part[i];
-                const double rows = scales[rng() % 5], lights = scales[rng() % 5];
+                const double rows = scales[rng() % 5], bright_tiles = scales[rng() % 5];
                 for (double& weight : part.weight) weight *= rows;
-                for (std::uint32_t k = part.first_light; k < part.end_light; ++k) point.cut.light[k] *= lights;
-                part.lights = acdf_cut_lights(&point.cut, part.first_light, part.end_light);
-                part.sum = part.lights + ((part.weight[0] + part.weight[1]) + part.weight[2]);
+                for (std::uint32_t k = part.first_light; k < part.end_light; ++k)
+                    point.cut.light[k] *= bright_tiles;
+                part.bright_tiles = acdf_cut_bright_tiles(&point.cut, part.first_light, part.end_light);
+                part.sum = part.bright_tiles + ((part.weight[0] + part.weight[1]) + part.weight[2]);
                 part.probability *= scales[rng() % 5];
             }
             acdf_cut_finish(&point.cut);
@@ -202,7 +203,7 @@ TEST(Product, DensityIntegratesToOne) {
             for (std::uint32_t x = 0; x < grid.columns; ++x) {
                 const AcdfRange square[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
                 const double middle[2] = {0.5, 0.5};
-                const AcdfDirectionSample at = acdf_grid_place(&grid, square, middle, 1.0);
+                const AcdfDirectionSample at = acdf_grid_position(&grid, square, middle, 1.0);
                 const float p = has_cut(point) ? acdf_cut_pdf(&light, &point.light, &point.cut, at.direction)
                                                : acdf_fast_cut_pdf(&light, &point.light, &point.fast, at.direction);
                 sum += double{p} * acdf_grid_solid_angle(&grid, square);
@@ -218,7 +219,7 @@ TEST(Product, DensityIntegratesToOne) {
     EXPECT_GT(open, 50);
 }
 
-// Wherever the lobe's own sampler draws, whatever the light; nothing is drawn where nothing is reflected.
+// Wherever the lobe's own sampler samples, whatever the light; nothing is sampled where nothing is reflected.
 TEST(Product, NothingIsLeftOut) {
     each_point(true, [&](const LoadedLocal&, const TestLobe& lobe, const Sampler& sampler,
                          const Sampler::Point& point, const std::string& name, std::mt19937_64& rng) {
@@ -238,12 +239,13 @@ TEST(Product, NothingIsLeftOut) {
     });
 }
 
-// Where no light arrives the lobe's own sampler draws all: its samples count as 0, and the density is still right.
+// Where no light arrives the lobe's own sampler samples all: its samples count as 0, and the density is still
+// right.
 TEST(Product, HemispheresWithoutLightAreTheLobes) {
     LocalSpec spec = random_local(1, false);
-    for (auto& light : spec.lights) light.share = 1e-30f;
+    for (auto& light : spec.bright_tiles) light.share = 1e-30f;
     for (auto& bin : spec.bins) bin.share = 0.0f;
-    spec.lights.clear();
+    spec.bright_tiles.clear();
     const LoadedLocal loaded(std::move(spec));
     const TestLobe lobe{0.1};
     const Sampler sampler(loaded.light(), lobe);

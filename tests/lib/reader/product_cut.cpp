@@ -1,5 +1,5 @@
-// Which part of a cut random numbers draw (acdf/cut_sample.h): the parts share the square of all numbers as their
-// splits say and by their probabilities, and the one whose share holds two numbers is drawn by them.
+// Which part of a cut random numbers sample (acdf/cut_sample.h): the parts share the square of all numbers as their
+// splits say and by their probabilities, and the one whose share holds two numbers is sampled by them.
 #include <acdf/cut_sample.h>
 
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ std::vector<double> numbers_of(const AcdfCut& cut, int axis, std::mt19937_64& rn
     return numbers;
 }
 
-void expect_drawn(const AcdfCut& cut, const double (&u)[2]) {
+void expect_sampled(const AcdfCut& cut, const double (&u)[2]) {
     int holding = -1, count = 0;
     for (int i = 0; i < cut.count; ++i) {
         const auto& box = cut.part[i].numbers;
@@ -78,7 +78,7 @@ void expect_drawn(const AcdfCut& cut, const double (&u)[2]) {
     }
     ASSERT_EQ(count, 1) << u[0] << ' ' << u[1];
     double left[2] = {u[0], u[1]};
-    ASSERT_EQ(acdf_cut_draw(&cut, left) - cut.part, holding) << u[0] << ' ' << u[1];
+    ASSERT_EQ(acdf_cut_choose_part(&cut, left) - cut.part, holding) << u[0] << ' ' << u[1];
     for (int axis = 0; axis < 2; ++axis) {
         const double low = cut.part[holding].numbers[axis][0], high = cut.part[holding].numbers[axis][1];
         ASSERT_EQ(left[axis], u[axis] - low < high - low ? (u[axis] - low) / (high - low) : 1.0);
@@ -98,7 +98,7 @@ TEST(ProductCut, NumbersDrawThePartThatHoldsThem) {
         std::mt19937_64 rng(seed);
         const std::vector<double> numbers[2] = {numbers_of(cut, 0, rng), numbers_of(cut, 1, rng)};
         for (int i = 0; i < 400; ++i)
-            expect_drawn(cut, {numbers[0][rng() % numbers[0].size()], numbers[1][rng() % numbers[1].size()]});
+            expect_sampled(cut, {numbers[0][rng() % numbers[0].size()], numbers[1][rng() % numbers[1].size()]});
     }
 }
 

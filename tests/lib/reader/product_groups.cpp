@@ -94,7 +94,7 @@ TEST(FastCut, EndsAreSharesInSteps) {
         AcdfFastCut cut;
         std::vector<float> share(ACDF_FAST_CUT_PARTS, 0.0f);
         double sum = 0.0;
-        cut.lights = 16;
+        cut.bright_tiles = 16;
         cut.count = 16 * (2 + static_cast<std::uint32_t>(rng() % (ACDF_FAST_CUT_PARTS / 16 - 1)));
         for (std::uint32_t i = 0; i < cut.count; ++i) {
             share[i] =

@@ -1,5 +1,5 @@
-// BRDFs for shaders beside the reader's: each draw has the density that both tell of its direction, draws are the
-// reader's, and so are densities, but for the rounding of floats and directions next to a border.
+// BRDFs for shaders beside the reader's: each sample has the density that both tell of its direction, samples are
+// the reader's, and so are densities, but for the rounding of floats and directions next to a border.
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/brdf_forms.h"
 #include "tests/lib/reader/golden_files.h"
@@ -62,24 +62,24 @@ private:
 };
 
 struct BrdfCounted {
-    int draws = 0, other_cells = 0, lost = 0, densities = 0, other_densities = 0;
+    int draws = 0, other_cells = 0, lost = 0, densities = 0, other_pdfs = 0;
     BrdfCounted& operator+=(const BrdfCounted& more) {
         draws += more.draws, other_cells += more.other_cells, lost += more.lost;
-        densities += more.densities, other_densities += more.other_densities;
+        densities += more.densities, other_pdfs += more.other_pdfs;
         return *this;
     }
 };
 
-void compare_brdf_density(const BrdfPoint& point, const float d[3], BrdfCounted& counted) {
+void compare_brdf_pdf(const BrdfPoint& point, const float d[3], BrdfCounted& counted) {
     const float pdf = point.pdf(d), told = point.read_pdf(d);
     ASSERT_TRUE(std::isfinite(pdf) && pdf >= 0.0f);
     ++counted.densities;
     if (nearly(pdf, told, point.rounds(d))) return;
-    ++counted.other_densities;
+    ++counted.other_pdfs;
     ASSERT_TRUE(point.told_near(d, pdf)) << d[0] << ' ' << d[1] << ' ' << d[2] << ' ' << pdf << ' ' << told;
 }
 
-void compare_brdf_draw(const BrdfPoint& point, std::uint32_t n0, std::uint32_t n1, BrdfCounted& counted) {
+void compare_brdf_sample(const BrdfPoint& point, std::uint32_t n0, std::uint32_t n1, BrdfCounted& counted) {
     const AcdfWalkSample s = point.sample(n0, n1);
     const acdf::DirectionSample told = point.read(n0 * 0x1p-32, n1 * 0x1p-32);
     const float d[3] = {s.x, s.y, s.z};
@@ -92,7 +92,7 @@ void compare_brdf_draw(const BrdfPoint& point, std::uint32_t n0, std::uint32_t n
         ASSERT_EQ(acdf_float_bits(own), acdf_float_bits(s.pdf)) << n0 << ' ' << n1;
     }
     ASSERT_NEAR(std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), 1.0, 1e-6);
-    compare_brdf_density(point, d, counted);
+    compare_brdf_pdf(point, d, counted);
     counted.other_cells += !nearly(s.pdf, told.pdf, 1e-3 + point.moves(d));
 }
 
@@ -102,22 +102,22 @@ BrdfCounted compare_brdf(const WalkedFile& file, std::size_t count) {
     for (std::size_t i = 0; i < count && !testing::Test::HasFatalFailure(); ++i) {
         const BrdfPoint point(file, wave.wo()[i]);
         std::uint32_t n[2];
-        bool inside = true; // else they, and what they draw, lie on the borders of cells
+        bool inside = true; // else they, and what they sample, lie on the borders of cells
         for (int k = 0; k < 2; ++k) {
             const double u = wave.u()[i][k];
             inside = inside && u > 1e-6 && u < 1.0 - 1e-6 && u != 0.5;
             n[k] = u > 0.0 ? static_cast<std::uint32_t>(std::min(u * 0x1p32, 0x1p32 - 1.0)) : 0;
         }
         SCOPED_TRACE(i);
-        compare_brdf_draw(point, n[0], n[1], inside ? counted : ends);
-        compare_brdf_density(point, wave.wi()[i], inside ? counted : ends); // half of them are draws
+        compare_brdf_sample(point, n[0], n[1], inside ? counted : ends);
+        compare_brdf_pdf(point, wave.wi()[i], inside ? counted : ends); // half of them are samples
     }
     return counted;
 }
 
 void expect_few(const BrdfCounted& all) {
     EXPECT_LT(all.other_cells, 1e-3 * all.draws);
-    EXPECT_LT(all.other_densities, 1e-3 * all.densities);
+    EXPECT_LT(all.other_pdfs, 1e-3 * all.densities);
     EXPECT_LT(all.lost, 1e-3 * all.draws);
 }
 

@@ -1,5 +1,5 @@
-// Walks for shaders beside the reader's: each draw has the density that both tell of its direction, draws are the
-// reader's, and so are densities, but for the rounding of floats and directions next to a border.
+// Walks for shaders beside the reader's: each sample has the density that both tell of its direction, samples are
+// the reader's, and so are densities, but for the rounding of floats and directions next to a border.
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/golden_files.h"
@@ -79,7 +79,7 @@ public:
     }
     /// What is rounded of a density, sr^-1: cosines to the normal, and of a light that no more than touches the
     /// horizon.
-    double faint() const { return 2e-7 * cosine_share() + (shader_.lights > 0 ? 1e-6 : 1e-30); }
+    double faint() const { return 2e-7 * cosine_share() + (shader_.bright_tiles > 0 ? 1e-6 : 1e-30); }
     double cosine_share() const { return double{shader_.cosine}; }
     /// Whether the two differ in what serves the normal: on a border between bins that are served differently.
     bool differs() const {
@@ -98,11 +98,10 @@ private:
 };
 
 struct WalkCounted {
-    int draws = 0, other_cells = 0, directions = 0, other_densities = 0, rounded = 0, normals = 0,
-        other_normals = 0;
+    int draws = 0, other_cells = 0, directions = 0, other_pdfs = 0, rounded = 0, normals = 0, other_normals = 0;
     WalkCounted& operator+=(const WalkCounted& more) {
         draws += more.draws, other_cells += more.other_cells;
-        directions += more.directions, other_densities += more.other_densities;
+        directions += more.directions, other_pdfs += more.other_pdfs;
         rounded += more.rounded;
         normals += more.normals, other_normals += more.other_normals;
         return *this;
@@ -132,7 +131,7 @@ bool told_near(const WalkPoint& point, const float d[3], float pdf) {
            any([&](const Vector& at) { return point.told_of_near_normal(at.data(), pdf); });
 }
 
-void compare_walk_draw(const WalkPoint& point, std::uint32_t n0, std::uint32_t n1, WalkCounted& counted) {
+void compare_walk_sample(const WalkPoint& point, std::uint32_t n0, std::uint32_t n1, WalkCounted& counted) {
     const AcdfWalkSample s = point.sample(n0, n1);
     const acdf::DirectionSample told = point.read(n0 * 0x1p-32, n1 * 0x1p-32);
     const float d[3] = {s.x, s.y, s.z};
@@ -151,13 +150,13 @@ void compare_walk_draw(const WalkPoint& point, std::uint32_t n0, std::uint32_t n
     counted.other_cells += !nearly(point, told.pdf, s.pdf);
 }
 
-void compare_walk_density(const WalkPoint& point, const float d[3], WalkCounted& counted) {
+void compare_walk_pdf(const WalkPoint& point, const float d[3], WalkCounted& counted) {
     const float pdf = point.pdf(d);
     ++counted.directions;
     ASSERT_TRUE(std::isfinite(pdf) && pdf >= 0.0f);
     ASSERT_TRUE(told_near(point, d, pdf))
         << d[0] << ' ' << d[1] << ' ' << d[2] << ' ' << pdf << ' ' << point.read_pdf(d);
-    counted.other_densities += !nearly(point, pdf, point.read_pdf(d));
+    counted.other_pdfs += !nearly(point, pdf, point.read_pdf(d));
 }
 
 WalkCounted compare_walk(const WalkedFile& file, int normals, int each) {
@@ -172,14 +171,14 @@ WalkCounted compare_walk(const WalkedFile& file, int normals, int each) {
         if (point.differs()) continue;
         for (int k = 0; k < each && !testing::Test::HasFatalFailure(); ++k) {
             const auto n0 = static_cast<std::uint32_t>(random()), n1 = static_cast<std::uint32_t>(random());
-            compare_walk_draw(point, k == 0 ? 0u : n0, k == 1 ? ~0u : n1, k < 2 ? edges : counted);
+            compare_walk_sample(point, k == 0 ? 0u : n0, k == 1 ? ~0u : n1, k < 2 ? edges : counted);
             const Vector any = anywhere(random);
-            compare_walk_density(point, any.data(), counted);
+            compare_walk_pdf(point, any.data(), counted);
             const double piece =
                 0.25 * M_PI * static_cast<double>(random() % 8); // at their seams, close to the poles
             Vector beside = towards(piece, 1.0 - std::exp(-30.0 * uniform(random)));
             if (random() % 2) beside[2] = -beside[2];
-            compare_walk_density(point, beside.data(), counted);
+            compare_walk_pdf(point, beside.data(), counted);
         }
     }
     return counted;

@@ -1,4 +1,4 @@
-// TableView: drawing, evaluating and inverting on axes of any number, range and order.
+// TableView: sampling, evaluating and inverting on axes of any number, range and order.
 #include "tests/lib/compress/chi_square.h"
 #include "tests/lib/reader/table_random.h"
 

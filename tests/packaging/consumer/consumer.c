@@ -1,4 +1,4 @@
-/* Draws from an environment file through acdf/acdf.h and acdf/sample.h; consumer.cpp prints the same. */
+/* Samples from an environment file through acdf/acdf.h and acdf/sample.h; consumer.cpp prints the same. */
 #include <acdf/acdf.h>
 
 #include <math.h>
@@ -13,7 +13,8 @@ static int draw(const AcdfEnvironment* sky) {
         printf("%.9g %.9g %.9g %.9g\n", (double)s.direction[0], (double)s.direction[1], (double)s.direction[2],
                (double)s.pdf);
         if (!(s.pdf > 0) || fabs((double)(pdf - s.pdf)) > 1e-4 * (double)s.pdf) {
-            fprintf(stderr, "sample %d: density %g when drawn, %g when asked for\n", i, (double)s.pdf, (double)pdf);
+            fprintf(stderr, "sample %d: density %g when sampled, %g when asked for\n", i, (double)s.pdf,
+                    (double)pdf);
             return 1;
         }
     }

@@ -1,4 +1,4 @@
-// Draws from an environment file through acdf/reader.h; consumer.c prints the same through the C interface.
+// Samples from an environment file through acdf/reader.h; consumer.c prints the same through the C interface.
 #include <acdf/reader.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
         std::printf("%.9g %.9g %.9g %.9g\n", double(s.direction[0]), double(s.direction[1]), double(s.direction[2]),
                     double(s.pdf));
         if (!(s.pdf > 0) || std::fabs(pdf - s.pdf) > 1e-4f * s.pdf) {
-            std::fprintf(stderr, "sample %d: density %g when drawn, %g when asked for\n", i, double(s.pdf),
+            std::fprintf(stderr, "sample %d: density %g when sampled, %g when asked for\n", i, double(s.pdf),
                          double(pdf));
             return 1;
         }

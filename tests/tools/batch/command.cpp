@@ -100,8 +100,8 @@ TEST_F(BatchCommand, AChangedSceneIsAnotherOption) {
     EXPECT_EQ(report({manifest})["done"], 1);
 }
 
-/// Places of a scene, told by a manifest or by --set: the bytes of `acdf local`, again where the scene changes.
-TEST_F(BatchCommand, PlacesAreThoseOfTheScene) {
+/// Visibility of a scene, told by a manifest or by --set: the bytes of `acdf local`, again where the scene changes.
+TEST_F(BatchCommand, VisibilityIsThatOfTheScene) {
     write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
     const std::string mesh = folder / "roof.obj",
                       roof = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 1\nv 1 -1 1\nv 1 0 1\nv -1 0 1\n"
@@ -111,11 +111,11 @@ TEST_F(BatchCommand, PlacesAreThoseOfTheScene) {
     write_text(scene, "1 0 0 0 0 1 0 0 0 0 1 0 roof.obj\n-1 0 0 5 0 1 0 0 0 0 1 0 roof.obj\n");
     write_text(manifest,
                "{\"source\": \"probes/a.pfm\", \"kind\": \"local\", \"output\": \"a.local.acdf\", "
-               "\"options\": {\"budget\": \"24KiB\", \"places\": true, \"scene\": \"roofs.instances\"}}\n");
+               "\"options\": {\"budget\": \"24KiB\", \"visibility\": true, \"scene\": \"roofs.instances\"}}\n");
     EXPECT_EQ(report({manifest})["done"], 1);
     EXPECT_EQ(report({manifest})["up_to_date"], 1);
-    ASSERT_EQ(run_acdf({"local", probes + "/a.pfm", "-o", folder / "alone.acdf", "--budget", "24KiB", "--places",
-                        "--scene", scene})
+    ASSERT_EQ(run_acdf({"local", probes + "/a.pfm", "-o", folder / "alone.acdf", "--budget", "24KiB",
+                        "--visibility", "--scene", scene})
                   .code,
               0);
     const std::vector<std::string> set{probes,
@@ -124,7 +124,7 @@ TEST_F(BatchCommand, PlacesAreThoseOfTheScene) {
                                        "--set",
                                        "local.budget=24KiB",
                                        "--set",
-                                       "local.places",
+                                       "local.visibility",
                                        "--set",
                                        "local.scene=" + scene};
     EXPECT_EQ(report(set)["up_to_date"], 1); // the same options by another way

@@ -111,7 +111,7 @@ TEST_F(BatchMemory, JobsTakeNoMoreThanIsEstimated) {
         jobs.push_back({"local", noise, options});
     const std::string mesh = folder / "floor.obj";
     write_text(mesh, "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 1\nv 1 0 1\nf 1 2 3 4\nf 5 6 3\n");
-    jobs.push_back({"local", noise, "--budget 128KiB --places --scene " + mesh});
+    jobs.push_back({"local", noise, "--budget 128KiB --visibility --scene " + mesh});
     for (const char* options : {"--budget 12KiB --views 4", "--fit cdf --views 6", "--cells 40 --views 4",
                                 "--budget 12KiB --views 4 --max-weight 10"})
         jobs.push_back({"brdf", "lambert", options});

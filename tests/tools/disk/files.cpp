@@ -1,7 +1,7 @@
 // Disks that are full, folders that refuse, links, other devices, several writers: the old file stays or the new
 // one is there, whole, and nothing else.
 #include "tests/tools/disk/files.h"
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 
 #include "tests/inputs/float_map.h"
 
@@ -86,7 +86,8 @@ TEST_F(Disk, closedStreamsGetNoOutput) {
     for (const auto& [closed, code] : cases) {
         const Result result =
             run_shell("exec " + program + " env '" + map + "' -f -o '" + made + "' >/dev/null " + closed);
-        EXPECT_EQ(result.code, code) << closed << ": results that cannot be told are an error, messages are none";
+        EXPECT_EQ(result.code, code) << closed
+                                     << ": results that cannot be printed are an error, messages are none";
         EXPECT_EQ(read_text(made), read_text(whole)) << closed;
         std::filesystem::remove(made);
     }

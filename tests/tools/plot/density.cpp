@@ -13,7 +13,7 @@ class EachFit : public testing::TestWithParam<AcdfFit> {};
 TEST_P(EachFit, LatlongPixelsAreTheReadersDensity) {
     const StoredEnvironment stored(dark_noise(), fit_options(GetParam(), 16, 8));
     const DensityImage image =
-        tools::draw_density(tools::plot_map(build::Layout::latlong, 200), tools::density_of(stored.view()));
+        tools::draw_density(tools::plot_map(build::Layout::latlong, 200), tools::pdf_of(stored.view()));
     ASSERT_EQ(image.map.height, 100);
     for (int y = 0; y < 100; ++y)
         for (int x = 0; x < 200; ++x) {
@@ -27,7 +27,7 @@ TEST_P(EachFit, LatlongPixelsAreTheReadersDensity) {
 TEST_P(EachFit, AngularPixelsAreTheReadersDensity) {
     const StoredEnvironment stored(dark_noise(), fit_options(GetParam(), 16, 8));
     const DensityImage image =
-        tools::draw_density(tools::plot_map(build::Layout::angular, 150), tools::density_of(stored.view()));
+        tools::draw_density(tools::plot_map(build::Layout::angular, 150), tools::pdf_of(stored.view()));
     ASSERT_EQ(image.map.height, 150);
     int outside = 0, differing = 0;
     for (int y = 0; y < 150; ++y)
@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Fits, EachFit,
 TEST(PlotDensity, OfAProbeIsItsShareAtFullResolution) {
     const compress::Target target = dark_noise();
     const DensityImage image =
-        tools::draw_density(tools::plot_map(build::Layout::latlong, 64), tools::density_of(target));
+        tools::draw_density(tools::plot_map(build::Layout::latlong, 64), tools::pdf_of(target));
     double integral = 0.0;
     for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 64; ++x) {

@@ -151,7 +151,7 @@ TEST(RenderSampler, TextsAreUnderstood) {
     EXPECT_EQ(parse_sampler("env").bytes, 65536u);
     EXPECT_EQ(parse_sampler("tiles:64x32").columns, 64u);
     EXPECT_EQ(parse_sampler("tiles").rows, 16u);
-    EXPECT_EQ(parse_sampler("visibility:8x4").columns, 8u);
+    EXPECT_EQ(parse_sampler("visibility-cache:8x4").columns, 8u);
     EXPECT_FALSE(parse_sampler("portals").uniform);
     EXPECT_TRUE(parse_sampler("portals:uniform").uniform);
     EXPECT_EQ(parse_sampler("ris:8").candidates, 8u);
@@ -189,16 +189,16 @@ TEST(RenderSampler, TextsAreUnderstood) {
     EXPECT_EQ(parse_sampler("mis(tiles:12x12(brdf),3*product(local,brdf))").parts[1].parts.size(), 2u);
 
     const SamplerSpec with =
-        parse_sampler("mis(2*auto:local:1MB --with cosine --shares 3:1 --heuristic power --scene, cosine)");
+        parse_sampler("mis(2*auto:local:1MB --mis cosine --shares 3:1 --heuristic power --scene, cosine)");
     EXPECT_TRUE(with.parts[0].automatic && with.parts[0].of_scene);
-    EXPECT_EQ(with.parts[0].company.kind, ACDF_COMPANY_COSINE);
-    EXPECT_EQ(with.parts[0].company.heuristic, ACDF_HEURISTIC_POWER);
-    EXPECT_EQ(with.parts[0].company.light, 3.0);
+    EXPECT_EQ(with.parts[0].mis.kind, ACDF_PARTNER_COSINE);
+    EXPECT_EQ(with.parts[0].mis.heuristic, ACDF_HEURISTIC_POWER);
+    EXPECT_EQ(with.parts[0].mis.light, 3.0);
     EXPECT_EQ(with.parts[1].kind, SamplerKind::cosine);
     for (const char* text :
-         {"local:1MB --with cosine", "mis(local --with mean,cosine)", "mis(full-cdf --scene,cosine)",
-          "mis(env --with,cosine)", "mis(env --with sun,cosine)", "mis(env --shares 2,cosine)",
-          "mis(auto:env --with cosine,auto:cosine)", "mis(ideal --with brdf,cosine)"})
+         {"local:1MB --mis cosine", "mis(local --mis mean,cosine)", "mis(full-cdf --scene,cosine)",
+          "mis(env --mis,cosine)", "mis(env --mis sun,cosine)", "mis(env --shares 2,cosine)",
+          "mis(auto:env --mis cosine,auto:cosine)", "mis(ideal --mis brdf,cosine)"})
         EXPECT_THROW(parse_sampler(text), SpecError) << text;
     const SamplerSpec compensated = parse_sampler("mis-compensated");
     EXPECT_EQ(compensated.text, "mis-compensated");
@@ -214,7 +214,7 @@ TEST(RenderSampler, MistakesAreNamed) {
         {"local:", "'' is no size"},
         {"cosine:1", "takes no argument"},
         {"tiles:32", "is no grid"},
-        {"visibility:32", "is no grid"},
+        {"visibility-cache:32", "is no grid"},
         {"portals:x", "is portals or portals:uniform"},
         {"ris:0", "candidates are counted"},
         {"product", "is product(LIGHT,BRDF)"},

@@ -1,4 +1,4 @@
-// Scenes of triangles: `acdf local --scene MESH --places` makes a file, `acdf render` looks from the same mesh.
+// Scenes of triangles: `acdf local --scene MESH --visibility` makes a file, `acdf render` looks from the same mesh.
 #include "tests/inputs/sanitized.h"
 #include "tests/tools/render/scenes.h"
 
@@ -26,14 +26,14 @@ struct MeshFolder : SceneFolder {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_acdf(arguments);
     }
-    /// A file of the places of room(), which is made once a process.
+    /// A file of the visibility of room(), which is made once a process.
     void room_file(const std::string& output, bool y_up = false) {
         static std::string made[2];
         std::string& bytes = made[y_up];
         if (bytes.empty()) {
             const std::string mesh = y_up ? "y.obj" : "room.obj";
             write_text(*this / mesh, room(y_up));
-            std::vector<std::string> more{"--scene", *this / mesh, "--places"};
+            std::vector<std::string> more{"--scene", *this / mesh, "--visibility"};
             if (y_up) more.insert(more.end(), {"--scene-up", "y"});
             const Result result = local(output, more);
             EXPECT_EQ(result.code, 0) << result.err;
@@ -52,29 +52,29 @@ struct MeshFolder : SceneFolder {
     }
 };
 
-TEST(MeshPlaces, AreDrawnFromInPictures) {
+TEST(MeshVisibility, AreDrawnFromInPictures) {
     ACDF_NOT_SANITIZED();
     MeshFolder folder;
-    const Result made = folder.local("room.acdf", {"--scene", folder / "room.obj", "--places", "--json"});
+    const Result made = folder.local("room.acdf", {"--scene", folder / "room.obj", "--visibility", "--json"});
     ASSERT_EQ(made.code, 0) << made.err;
-    EXPECT_NE(made.err.find("places on 22 triangles"), std::string::npos) << made.err;
-    EXPECT_GT(Json::parse(made.out).at("places"), 50);
+    EXPECT_NE(made.err.find("visibility on 22 triangles"), std::string::npos) << made.err;
+    EXPECT_GT(Json::parse(made.out).at("visibility"), 50);
     EXPECT_EQ(run_acdf({"validate", folder / "room.acdf"}).code, 0);
     const Json info = Json::parse(run_acdf({"info", "--json", folder / "room.acdf"}).out);
-    EXPECT_GT(info.at("local").at("places").at("cells"), 50);
-    EXPECT_NE(std::string(info.at("options")).find(" --places"), std::string::npos) << info.at("options");
+    EXPECT_GT(info.at("local").at("visibility").at("cells"), 50);
+    EXPECT_NE(std::string(info.at("options")).find(" --visibility"), std::string::npos) << info.at("options");
     EXPECT_LE(info.at("bytes"), 65536);
     const Json measured =
         Json::parse(run_acdf({"measure", folder / "room.acdf", "--against", folder / "probe.pfm", "--json"}).out);
     EXPECT_EQ(measured.at("support_violations"), 0);
-    EXPECT_FALSE(measured.contains("places"));
+    EXPECT_FALSE(measured.contains("visibility"));
 
-    std::vector<std::string> drawn_from{"--sampler", "local:64KiB", "--sampler", "file:room.acdf"};
-    if (!acdf_test::kSanitized) drawn_from.insert(drawn_from.end(), {"--sampler", "places:64KiB"});
-    const Result result = folder.render("scene.json", "out", drawn_from);
+    std::vector<std::string> sampled_from{"--sampler", "local:64KiB", "--sampler", "file:room.acdf"};
+    if (!acdf_test::kSanitized) sampled_from.insert(sampled_from.end(), {"--sampler", "visibility:64KiB"});
+    const Result result = folder.render("scene.json", "out", sampled_from);
     ASSERT_EQ(result.code, 0) << result.err;
     const Json samplers = Json::parse(result.out).at("samplers");
-    ASSERT_EQ(samplers.size(), drawn_from.size() / 2);
+    ASSERT_EQ(samplers.size(), sampled_from.size() / 2);
     for (const Json& one : samplers) {
         EXPECT_LT(std::fabs(double(one.at("bias_standard_errors"))), 4.0) << one;
         if (one.at("sampler") == "local:64KiB") continue;
@@ -84,7 +84,7 @@ TEST(MeshPlaces, AreDrawnFromInPictures) {
 }
 
 /// On the mesh, whichever axis of it points up.
-TEST(MeshPlaces, AreMeasuredOnTheirMesh) {
+TEST(MeshVisibility, AreMeasuredOnTheirMesh) {
     MeshFolder folder;
     folder.room_file("room.acdf");
     ASSERT_EQ(folder.local("plain.acdf", {}).code, 0);
@@ -95,28 +95,28 @@ TEST(MeshPlaces, AreMeasuredOnTheirMesh) {
     };
     const Result result = measure("room.acdf", {"--scene", folder / "room.obj", "--points", "40"});
     ASSERT_EQ(result.code, 0) << result.err;
-    const Json places = Json::parse(result.out).at("places");
-    EXPECT_GT(places.at("points"), 10);
-    EXPECT_LE(places.at("points"), 40);
-    EXPECT_GT(places.at("relative_variance"), 0.0);
-    EXPECT_NE(places.at("gain"), 1.0);
-    EXPECT_EQ(places.at("support_violations"), 0);
-    EXPECT_GE(places.at("relative_variance_worst"), places.at("relative_variance"));
+    const Json visibility = Json::parse(result.out).at("visibility");
+    EXPECT_GT(visibility.at("points"), 10);
+    EXPECT_LE(visibility.at("points"), 40);
+    EXPECT_GT(visibility.at("relative_variance"), 0.0);
+    EXPECT_NE(visibility.at("gain"), 1.0);
+    EXPECT_EQ(visibility.at("support_violations"), 0);
+    EXPECT_GE(visibility.at("relative_variance_worst"), visibility.at("relative_variance"));
     if (!acdf_test::kSanitized) { // the same code
         write_text(folder / "y.obj", room(true));
         folder.room_file("y.acdf", true);
         const Result turned = measure("y.acdf", {"--scene", folder / "y.obj", "--scene-up", "y", "--points", "40"});
         ASSERT_EQ(turned.code, 0) << turned.err;
-        EXPECT_NEAR(Json::parse(turned.out).at("places").at("relative_variance"), places.at("relative_variance"),
-                    1e-3);
+        EXPECT_NEAR(Json::parse(turned.out).at("visibility").at("relative_variance"),
+                    visibility.at("relative_variance"), 1e-3);
     }
     const Result text = run_acdf({"measure", folder / "room.acdf", "--against", folder / "probe.pfm", "--scene",
                                   folder / "room.obj", "--points", "9"});
-    EXPECT_NE(text.out.find("places of the scene"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("positions of the scene"), std::string::npos) << text.out;
     const Result by_normals =
-        measure("plain.acdf", {"--scene", folder / "room.obj"}); // which tells no places apart
+        measure("plain.acdf", {"--scene", folder / "room.obj"}); // which stores no visibility cells
     EXPECT_EQ(by_normals.code, 0) << by_normals.err;
-    EXPECT_FALSE(Json::parse(by_normals.out).contains("places"));
+    EXPECT_FALSE(Json::parse(by_normals.out).contains("visibility"));
     EXPECT_EQ(measure("plain.acdf", {"--scene", folder / "room.obj", "--points", "9"}).code, 2);
     EXPECT_EQ(measure("room.acdf", {"--scene", folder / "none.obj"}).code, 1);
     EXPECT_EQ(measure("room.acdf", {"--points", "9"}).code, 2);
@@ -124,7 +124,7 @@ TEST(MeshPlaces, AreMeasuredOnTheirMesh) {
 }
 
 /// What has come and what has gone since the file was made.
-TEST(MeshPlaces, OfAnotherSceneAreUnbiased) {
+TEST(MeshVisibility, OfAnotherSceneAreUnbiased) {
     MeshFolder folder;
     folder.room_file("room.acdf");
     std::string changed = room();
@@ -136,7 +136,7 @@ TEST(MeshPlaces, OfAnotherSceneAreUnbiased) {
     EXPECT_LT(std::fabs(double(Json::parse(result.out).at("samplers")[0].at("bias_standard_errors"))), 4.0);
 }
 
-TEST(MeshPlaces, OfMeshesWithYUpAreThoseOfTheirOwnCoordinates) {
+TEST(MeshVisibility, OfMeshesWithYUpAreThoseOfTheirOwnCoordinates) {
     MeshFolder folder;
     write_text(folder / "y.obj", room(true));
     folder.room_file("z.acdf");
@@ -149,7 +149,7 @@ TEST(MeshPlaces, OfMeshesWithYUpAreThoseOfTheirOwnCoordinates) {
         const float p[3] = {float(i % 7) * 0.6f - 1.8f, float(i % 11) * 0.35f - 1.8f, float(i % 3) * 0.9f},
                     turned[3] = {p[1], p[2], p[0]};
         const AcdfLocalPoint a = z.local().at(p, n), b = y.local().at(turned, n);
-        ASSERT_GT(a.place.count, 0);
+        ASSERT_GT(a.visibility.count, 0);
         const DirectionSample s = z.local().sample(a, i / 200.0, 0.3), t = y.local().sample(b, i / 200.0, 0.3);
         // Sums over what is seen are rounded in another order: a share of a row may be a step off.
         EXPECT_NEAR(s.pdf, t.pdf, 1e-5f * s.pdf);
@@ -177,7 +177,7 @@ std::string mirrored_room() {
     return out.str();
 }
 
-TEST(MeshPlaces, OfAMirroredFrameAreThoseOfTheirOwnCoordinates) {
+TEST(MeshVisibility, OfAMirroredFrameAreThoseOfTheirOwnCoordinates) {
     ACDF_NOT_SANITIZED();
     MeshFolder folder;
     write_text(folder / "pbrt.obj", mirrored_room());
@@ -185,10 +185,10 @@ TEST(MeshPlaces, OfAMirroredFrameAreThoseOfTheirOwnCoordinates) {
     const Result told = folder.local("as-is.acdf", {"--scene", folder / "pbrt.obj", "--for", "luxcore"});
     EXPECT_NE(told.err.find("--scene-axes \"(-X, Y, Z)\""), std::string::npos) << told.err;
     const Result made =
-        folder.local("x.acdf", {"--scene", folder / "pbrt.obj", "--scene-axes", "(-X, Y, Z)", "--places"});
+        folder.local("x.acdf", {"--scene", folder / "pbrt.obj", "--scene-axes", "(-X, Y, Z)", "--visibility"});
     ASSERT_EQ(made.code, 0) << made.err;
     const Json info = Json::parse(run_acdf({"info", "--json", folder / "x.acdf"}).out);
-    EXPECT_NE(std::string(info.at("options")).find(" --scene-axes (-x,y,z) --places"), std::string::npos);
+    EXPECT_NE(std::string(info.at("options")).find(" --scene-axes (-x,y,z) --visibility"), std::string::npos);
     File z, x;
     ASSERT_TRUE(File::open((folder / "z.acdf").c_str(), z).ok());
     ASSERT_TRUE(File::open((folder / "x.acdf").c_str(), x).ok());
@@ -197,14 +197,14 @@ TEST(MeshPlaces, OfAMirroredFrameAreThoseOfTheirOwnCoordinates) {
         const float p[3] = {float(i % 7) * 0.6f - 1.8f, float(i % 11) * 0.35f - 1.8f, float(i % 3) * 0.9f},
                     there[3] = {-p[0], p[1], p[2]};
         const AcdfLocalPoint a = z.local().at(p, n), b = x.local().at(there, n);
-        ASSERT_GT(b.place.count, 0);
+        ASSERT_GT(b.visibility.count, 0);
         const DirectionSample s = z.local().sample(a, i / 200.0, 0.3);
         EXPECT_NEAR(x.local().pdf(b, s.direction), s.pdf, 0.01 * s.pdf); // normals are summed in another order
     }
 }
 
-/// Under the roof the sky above the open half is drawn, and what the roof hides is not.
-TEST(MeshPlaces, ArePlotted) {
+/// Under the roof the sky above the open half is sampled, and what the roof hides is not.
+TEST(MeshVisibility, ArePlotted) {
     MeshFolder folder;
     folder.room_file("room.acdf");
     ASSERT_EQ(folder.local("plain.acdf", {}).code, 0);
@@ -213,9 +213,9 @@ TEST(MeshPlaces, ArePlotted) {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_acdf(arguments);
     };
-    ASSERT_EQ(plot("room.acdf", "here.exr", {"--normal", "0,0,1", "--place", "0,-1,0"}).code, 0);
+    ASSERT_EQ(plot("room.acdf", "here.exr", {"--normal", "0,0,1", "--position", "0,-1,0"}).code, 0);
     ASSERT_EQ(plot("room.acdf", "anywhere.exr", {"--normal", "0,0,1"}).code, 0);
-    ASSERT_EQ(plot("room.acdf", "six.png", {"--place", "0,-1,0.1"}).code, 0);
+    ASSERT_EQ(plot("room.acdf", "six.png", {"--position", "0,-1,0.1"}).code, 0);
     EXPECT_NE(read_text(folder / "here.exr"), read_text(folder / "anywhere.exr"));
     ASSERT_EQ(plot("room.acdf", "cells.png", {"--scene", folder / "room.obj"}).code, 0);
     ASSERT_EQ(
@@ -226,17 +226,17 @@ TEST(MeshPlaces, ArePlotted) {
     EXPECT_EQ(plot("plain.acdf", "no.png", {"--scene", folder / "room.obj"}).code, 1);
     EXPECT_EQ(plot("room.acdf", "no.png", {"--scene", folder / "none.obj"}).code, 1);
     EXPECT_EQ(plot("room.acdf", "no.exr", {"--scene", folder / "room.obj"}).code, 2);
-    EXPECT_EQ(plot("room.acdf", "no.png", {"--scene", folder / "room.obj", "--place", "0,0,0"}).code, 2);
+    EXPECT_EQ(plot("room.acdf", "no.png", {"--scene", folder / "room.obj", "--position", "0,0,0"}).code, 2);
     EXPECT_EQ(plot("room.acdf", "no.png", {"--from", "0,0,0"}).code, 2);
     for (const auto& [file, place] : {std::pair{"plain.acdf", "0,0,0"}, {"room.acdf", "0,0,9"}}) {
-        const Result refused = plot(file, "no.png", {"--place", place});
+        const Result refused = plot(file, "no.png", {"--position", place});
         EXPECT_EQ(refused.code, 1);
         EXPECT_EQ(lines_in(refused.err), 1u) << refused.err;
     }
 }
 
 /// A file of the mesh itself and one that is made for the picture serve it as well as those of a mesh with z up.
-TEST(MeshPlaces, OfMeshesWithYUpServePictures) {
+TEST(MeshVisibility, OfMeshesWithYUpServePictures) {
     ACDF_NOT_SANITIZED();
     MeshFolder folder;
     write_text(folder / "y.obj", room(true));
@@ -244,8 +244,8 @@ TEST(MeshPlaces, OfMeshesWithYUpServePictures) {
     folder.room_file("y.acdf", true);
     const Result result =
         folder.render("y.json", "out",
-                      {"--sampler", "local:64KiB", "--sampler", "file:y.acdf", "--sampler", "places:64KiB",
-                       "--sampler", "product(places:64KiB,ggx:0.9)", "--sequence", "independent"},
+                      {"--sampler", "local:64KiB", "--sampler", "file:y.acdf", "--sampler", "visibility:64KiB",
+                       "--sampler", "product(visibility:64KiB,ggx:0.9)", "--sequence", "independent"},
                       "40");
     ASSERT_EQ(result.code, 0) << result.err;
     const Json samplers = Json::parse(result.out).at("samplers");
@@ -257,7 +257,7 @@ TEST(MeshPlaces, OfMeshesWithYUpServePictures) {
 }
 
 /// What others do in rooms, on the mesh itself and on one with y up.
-TEST(MeshRivals, OfRoomsAreUnbiased) {
+TEST(MeshBaselines, OfRoomsAreUnbiased) {
     ACDF_NOT_SANITIZED();
     MeshFolder folder;
     write_text(folder / "y.obj", room(true));
@@ -266,8 +266,8 @@ TEST(MeshRivals, OfRoomsAreUnbiased) {
         const Result result =
             folder.render(scene, "out-" + scene,
                           {"--sampler", "full-cdf", "--sampler", "portals", "--sampler", "portals:uniform",
-                           "--sampler", "mis(portals,cosine)", "--sampler", "visibility:8x4", "--sampler",
-                           "mis(visibility:8x4,cosine)", "--sequence", "independent"});
+                           "--sampler", "mis(portals,cosine)", "--sampler", "visibility-cache:8x4", "--sampler",
+                           "mis(visibility-cache:8x4,cosine)", "--sequence", "independent"});
         ASSERT_EQ(result.code, 0) << result.err;
         const Json report = Json::parse(result.out);
         for (const Json& one : report.at("samplers")) {
@@ -278,8 +278,8 @@ TEST(MeshRivals, OfRoomsAreUnbiased) {
     }
 }
 
-/// A room in two files is one scene: what one of them hides from places on the other is known.
-TEST(MeshPlaces, OfSeveralFilesAreThoseOfAllTogether) {
+/// A room in two files is one scene: what one of them hides from visibility on the other is known.
+TEST(MeshVisibility, OfSeveralFilesAreThoseOfAllTogether) {
     ACDF_NOT_SANITIZED();
     MeshFolder folder;
     const std::string whole = room(), points = whole.substr(0, whole.find('f')),
@@ -289,29 +289,29 @@ TEST(MeshPlaces, OfSeveralFilesAreThoseOfAllTogether) {
     write_text(folder / "box.obj", points + faces.substr(middle));
     folder.room_file("one.acdf");
     const Result two =
-        folder.local("two.acdf", {"--scene", folder / "walls.obj", "--scene", folder / "box.obj", "--places"});
+        folder.local("two.acdf", {"--scene", folder / "walls.obj", "--scene", folder / "box.obj", "--visibility"});
     ASSERT_EQ(two.code, 0) << two.err;
-    const auto places = [&](const std::string& file) {
-        return Json::parse(run_acdf({"info", "--json", folder / file}).out).at("local").at("places");
+    const auto visibility = [&](const std::string& file) {
+        return Json::parse(run_acdf({"info", "--json", folder / file}).out).at("local").at("visibility");
     };
-    EXPECT_EQ(places("one.acdf"), places("two.acdf"));
+    EXPECT_EQ(visibility("one.acdf"), visibility("two.acdf"));
     File a, b;
     ASSERT_TRUE(File::open((folder / "one.acdf").c_str(), a).ok());
     ASSERT_TRUE(File::open((folder / "two.acdf").c_str(), b).ok());
     const AcdfLocal x = a.local().data(), y = b.local().data();
-    ASSERT_EQ(x.places.header->split_count, y.places.header->split_count);
-    for (std::uint32_t i = 0; i < x.places.header->split_count; ++i)
-        EXPECT_EQ(x.places.splits[i].position, y.places.splits[i].position);
+    ASSERT_EQ(x.visibility.header->split_count, y.visibility.header->split_count);
+    for (std::uint32_t i = 0; i < x.visibility.header->split_count; ++i)
+        EXPECT_EQ(x.visibility.splits[i].position, y.visibility.splits[i].position);
 }
 
 /// In the middle of the room light comes from above, for whatever hangs there.
-TEST(MeshPlaces, InTheAirKnowWhatIsHiddenThere) {
+TEST(MeshVisibility, InTheAirKnowWhatIsHiddenThere) {
     MeshFolder folder;
-    ASSERT_EQ(folder.local("air.acdf", {"--scene", folder / "room.obj", "--places", "--volume"}).code, 0);
+    ASSERT_EQ(folder.local("air.acdf", {"--scene", folder / "room.obj", "--visibility", "--volume"}).code, 0);
     File file;
     ASSERT_TRUE(File::open((folder / "air.acdf").c_str(), file).ok());
     const std::string options = Json::parse(run_acdf({"info", "--json", folder / "air.acdf"}).out).at("options");
-    EXPECT_NE(options.find("--places --volume"), std::string::npos) << options;
+    EXPECT_NE(options.find("--visibility --volume"), std::string::npos) << options;
     const LocalEnvironmentView view = file.local();
     const float middle[3] = {0.0f, 1.0f, 1.0f}; // below the half that is open
     double sky = 0.0, alone = 0.0;
@@ -327,13 +327,13 @@ TEST(MeshPlaces, InTheAirKnowWhatIsHiddenThere) {
     EXPECT_GT(sky, 500.0);
 }
 
-/// Ended at any moment of the search for places, the program leaves nothing.
-TEST(MeshPlaces, LeaveNothingWhereTheyAreCancelled) {
+/// Ended at any moment of the search for visibility, the program leaves nothing.
+TEST(MeshVisibility, LeaveNothingWhereTheyAreCancelled) {
     MeshFolder folder;
     const std::size_t before = folder.entries();
     for (const int milliseconds : {30, 150, 400}) {
         const pid_t pid = start_acdf({"local", folder / "probe.pfm", "-o", folder / "no.acdf", "--scene",
-                                      folder / "room.obj", "--places", "--budget", "4MB", "--quiet"},
+                                      folder / "room.obj", "--visibility", "--budget", "4MB", "--quiet"},
                                      "/dev/null", "/dev/null", "/dev/null");
         ASSERT_GT(pid, 0);
         std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
@@ -343,7 +343,7 @@ TEST(MeshPlaces, LeaveNothingWhereTheyAreCancelled) {
     }
 }
 
-TEST(MeshPlaces, MistakesAreOneLine) {
+TEST(MeshVisibility, MistakesAreOneLine) {
     MeshFolder folder;
     write_text(folder / "broken.obj", "v 0 0 0\n");
     const auto refused = [&](const std::vector<std::string>& options, int code, const std::string& part) {
@@ -353,12 +353,12 @@ TEST(MeshPlaces, MistakesAreOneLine) {
         EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
         EXPECT_FALSE(std::filesystem::exists(folder / "no.acdf"));
     };
-    refused({"--places"}, 2, "--places");
-    refused({"--places", "--scene", folder / "room.obj", "--no-sharing"}, 2, "--places");
+    refused({"--visibility"}, 2, "--visibility");
+    refused({"--visibility", "--scene", folder / "room.obj", "--no-sharing"}, 2, "--visibility");
     refused({"--volume", "--scene", folder / "room.obj"}, 2, "--volume");
-    refused({"--places", "--scene", folder / "none.obj", "--scene", folder / "room.obj"}, 1, "none.obj");
-    refused({"--places", "--scene", folder / "probe.pfm"}, 1, "probe.pfm");
-    refused({"--places", "--scene", folder / "broken.obj"}, 1, "broken.obj");
+    refused({"--visibility", "--scene", folder / "none.obj", "--scene", folder / "room.obj"}, 1, "none.obj");
+    refused({"--visibility", "--scene", folder / "probe.pfm"}, 1, "probe.pfm");
+    refused({"--visibility", "--scene", folder / "broken.obj"}, 1, "broken.obj");
     write_text(folder / "none.json", mesh_scene("none.obj"));
     const Result missing = folder.render("none.json", "out");
     EXPECT_EQ(missing.code, 1);
@@ -367,7 +367,7 @@ TEST(MeshPlaces, MistakesAreOneLine) {
     const Result shut = folder.render("shut.json", "out");
     EXPECT_EQ(shut.code, 1);
     EXPECT_EQ(lines_in(shut.err), 1u) << shut.err;
-    EXPECT_NE(shut.err.find("tells no portals"), std::string::npos) << shut.err;
+    EXPECT_NE(shut.err.find("has no portals"), std::string::npos) << shut.err;
 }
 
 } // namespace

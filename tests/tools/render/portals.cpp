@@ -1,4 +1,4 @@
-// Windows that files of places know: told by --portal and --portals, and drawn through in pictures.
+// Windows that files with visibility cells know: told by --portal and --portals, and sampled through in pictures.
 #include "tests/tools/render/scenes.h"
 
 #include <acdf/reader.h>
@@ -34,12 +34,13 @@ struct Opened {
 
 TEST(MeshPortals, AreToldByCornersAndByAScene) {
     PortalFolder folder;
-    const Result one = folder.local("one.acdf", {"--places", "--portal", kOpening}),
-                 two = folder.local("two.acdf", {"--places", "--portals", folder / "scene.json"});
+    const Result one = folder.local("one.acdf", {"--visibility", "--portal", kOpening}),
+                 two = folder.local("two.acdf", {"--visibility", "--portals", folder / "scene.json"});
     ASSERT_EQ(one.code, 0) << one.err;
     ASSERT_EQ(two.code, 0) << two.err;
     write_text(folder / "y.obj", room(true));
-    const Result y_up = folder.local("y.acdf", {"--scene-up", "y", "--places", "--portal", kOpeningYUp}, "y.obj");
+    const Result y_up =
+        folder.local("y.acdf", {"--scene-up", "y", "--visibility", "--portal", kOpeningYUp}, "y.obj");
     ASSERT_EQ(y_up.code, 0) << y_up.err;
     const Opened a(folder / "one.acdf"), b(folder / "two.acdf"), c(folder / "y.acdf");
     ASSERT_TRUE(a.file.local().has_portals());
@@ -52,30 +53,31 @@ TEST(MeshPortals, AreToldByCornersAndByAScene) {
             EXPECT_NEAR(a.data().portals.portals->sides[k], other->data().portals.portals->sides[k], 1e-5);
     }
     const float x[3] = {0.5f, -1, 0.1f}, y[3] = {-1, 0.1f, 0.5f}, up[3] = {0, 0, 1};
-    EXPECT_EQ(a.file.local().at(x, up).windows.count, 1);
-    EXPECT_EQ(c.file.local().at(y, up).windows.count, 1);
+    EXPECT_EQ(a.file.local().at(x, up).visible_portals.count, 1);
+    EXPECT_EQ(c.file.local().at(y, up).visible_portals.count, 1);
 
     const Json info = Json::parse(run_acdf({"info", "--json", folder / "one.acdf"}).out);
     EXPECT_EQ(info.at("local").at("portals").at("count"), 1);
-    EXPECT_NE(std::string(info.at("options")).find("--places --portal \"-2,0,2 2,0,2 2,2,2\""), std::string::npos);
+    EXPECT_NE(std::string(info.at("options")).find("--visibility --portal \"-2,0,2 2,0,2 2,2,2\""),
+              std::string::npos);
     const Result text = run_acdf({"info", folder / "one.acdf"});
     EXPECT_NE(text.out.find("1 portals, 1 maps"), std::string::npos) << text.out;
     EXPECT_EQ(run_acdf({"validate", folder / "one.acdf"}).code, 0);
-    EXPECT_EQ(run_acdf({"plot", folder / "one.acdf", "-o", folder / "plot.png", "--place", "0,-1,0.1", "--normal",
-                        "0,0,1"})
+    EXPECT_EQ(run_acdf({"plot", folder / "one.acdf", "-o", folder / "plot.png", "--position", "0,-1,0.1",
+                        "--normal", "0,0,1"})
                   .code,
               0);
 
     const Result measured = run_acdf({"measure", folder / "one.acdf", "--against", folder / "probe.pfm", "--scene",
                                       folder / "room.obj", "--json"});
     ASSERT_EQ(measured.code, 0) << measured.err;
-    EXPECT_EQ(Json::parse(measured.out).at("places").at("support_violations"), 0);
+    EXPECT_EQ(Json::parse(measured.out).at("visibility").at("support_violations"), 0);
 }
 
 TEST(MeshPortals, ThoseThatDoNotFitTheirWindowsAreRemarkedOn) {
     PortalFolder folder;
     const auto remarks = [&](const std::string& portal) {
-        const Result made = folder.local("a.acdf", {"--places", "--portal", portal, "--force"});
+        const Result made = folder.local("a.acdf", {"--visibility", "--portal", portal, "--force"});
         EXPECT_EQ(made.code, 0) << made.err;
         return made.err;
     };
@@ -91,7 +93,7 @@ TEST(MeshPortals, ThoseThatDoNotFitTheirWindowsAreRemarkedOn) {
 
     write_text(folder / "y.obj", room(true));
     const Result y_up =
-        folder.local("y.acdf", {"--scene-up", "y", "--places", "--portal", "-2,2,-2 -2,2,2 2,2,2"}, "y.obj");
+        folder.local("y.acdf", {"--scene-up", "y", "--visibility", "--portal", "-2,2,-2 -2,2,2 2,2,2"}, "y.obj");
     EXPECT_NE(y_up.err.find("through 50 % of it"), std::string::npos) << y_up.err;
 }
 
@@ -99,7 +101,7 @@ TEST(MeshPortals, AreDrawnThroughInPictures) {
     PortalFolder folder;
     const Result result = run_acdf({"render", "--scene", folder / "scene.json", "--data", folder.data(), "-o",
                                     folder / "out", "--seeds", "40", "--no-timing", "--json", "--no-reference",
-                                    "--sampler", "places-portals:48KiB", "--sequence", "independent"});
+                                    "--sampler", "visibility-portals:48KiB", "--sequence", "independent"});
     ASSERT_EQ(result.code, 0) << result.err;
     const Json json = Json::parse(result.out);
     ASSERT_EQ(json.at("samplers").size(), 1u);
@@ -114,17 +116,17 @@ TEST(MeshPortals, MistakesAreOneLine) {
         EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
         EXPECT_FALSE(std::filesystem::exists(folder / "no.acdf"));
     };
-    refused({"--portal", kOpening}, 2, "is for --places");
-    refused({"--places", "--portal", "1,2,3"}, 2, "three corners");
-    refused({"--places", "--portal", "-2,0,2 2,0,2 2,2,2 1"}, 2, "three corners");
-    refused({"--places", "--portal", "-2,0,2 2,0,2 2,2,nan"}, 2, "three corners");
-    refused({"--places", "--portal", "-2,0,2 2,0,2 3,2,2"}, 1, "right angles");
-    refused({"--places", "--portal", "-2,0,2 -2,2,2 2,2,2"}, 1, "portal 1");
-    refused({"--places", "--portals", folder / "none.json"}, 1, "none.json");
+    refused({"--portal", kOpening}, 2, "is for --visibility");
+    refused({"--visibility", "--portal", "1,2,3"}, 2, "three corners");
+    refused({"--visibility", "--portal", "-2,0,2 2,0,2 2,2,2 1"}, 2, "three corners");
+    refused({"--visibility", "--portal", "-2,0,2 2,0,2 2,2,nan"}, 2, "three corners");
+    refused({"--visibility", "--portal", "-2,0,2 2,0,2 3,2,2"}, 1, "right angles");
+    refused({"--visibility", "--portal", "-2,0,2 -2,2,2 2,2,2"}, 1, "portal 1");
+    refused({"--visibility", "--portals", folder / "none.json"}, 1, "none.json");
     write_text(folder / "bad.json", "{}");
-    refused({"--places", "--portals", folder / "bad.json"}, 1, "bad.json");
+    refused({"--visibility", "--portals", folder / "bad.json"}, 1, "bad.json");
     write_text(folder / "bad.json", small_scene("\"cosine\""));
-    refused({"--places", "--portals", folder / "bad.json"}, 1, "bad.json: the scene tells no portals");
+    refused({"--visibility", "--portals", folder / "bad.json"}, 1, "bad.json: the scene has no portals");
 }
 
 } // namespace

@@ -57,12 +57,12 @@ TEST(RenderSamplers, OfLightAreUnbiased) {
                                   kSeeds));
 }
 
-TEST(RenderSamplers, OfCompaniesAreUnbiased) {
+TEST(RenderSamplers, OfPartnersAreUnbiased) {
     SmallScene scene;
-    expect_unbiased(scene.compare({"mis(env:4KiB --with cosine,cosine)", "mis(auto:env:4KiB --with cosine,cosine)",
-                                   "mis-power(local:48KiB --with cosine --heuristic power,cosine)",
-                                   "mis(auto:local:48KiB --with cosine --shares 3:1, cosine, full-cdf)",
-                                   "mis(env:4KiB --with brdf,cosine)", "ideal", "mis(ideal --with cosine,cosine)"},
+    expect_unbiased(scene.compare({"mis(env:4KiB --mis cosine,cosine)", "mis(auto:env:4KiB --mis cosine,cosine)",
+                                   "mis-power(local:48KiB --mis cosine --heuristic power,cosine)",
+                                   "mis(auto:local:48KiB --mis cosine --shares 3:1, cosine, full-cdf)",
+                                   "mis(env:4KiB --mis brdf,cosine)", "ideal", "mis(ideal --mis cosine,cosine)"},
                                   kSeeds));
 }
 
@@ -143,13 +143,13 @@ Compared made(const char* text, bool ours, double noise, double time) {
     return out;
 }
 
-TEST(RenderSamplers, VerdictSaysWhereARivalWins) {
+TEST(RenderSamplers, VerdictSaysWhereABaselineWins) {
     Comparison comparison;
     comparison.samplers = {made("full-cdf", false, 1.0, 100.0), made("ris:32", false, 0.05, 4000.0),
                            made("local:1MB", true, 0.1, 150.0)};
     std::vector<std::string> says = verdict(comparison, true);
     ASSERT_EQ(says.size(), 2u);
-    EXPECT_NE(says[0].find("a rival wins: 'ris:32', 2 ("), std::string::npos) << says[0];
+    EXPECT_NE(says[0].find("a baseline wins: 'ris:32', 2 ("), std::string::npos) << says[0];
     EXPECT_NE(says[1].find("ours, 'local:1MB', wins"), std::string::npos) << says[1];
     EXPECT_NE(says[1].find("'full-cdf'"), std::string::npos) << says[1];
     EXPECT_EQ(says[0].find("within the noise"), std::string::npos);

@@ -95,36 +95,36 @@ TEST(SweepCommand, ResampledProbesAreMeasuredAsFilesOfThemAre) {
 }
 
 /// A roof over one half of a floor.
-TEST(SweepCommand, PlacesAreComparedOnTheirScene) {
+TEST(SweepCommand, VisibilityIsComparedOnItsScene) {
     const Folder folder;
     const std::string probe = tiny_probe(folder), mesh = folder / "roof.obj";
     write_text(mesh, "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 1\nv 1 -1 1\nv 1 0 1\nv -1 0 1\n"
                      "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\n");
-    const std::vector<std::string> words{"sweep",   probe, "-o",        folder / "out", "--kind", "places",
+    const std::vector<std::string> words{"sweep",   probe, "-o",        folder / "out", "--kind", "visibility",
                                          "--scene", mesh,  "--budgets", "48KiB",        "--quiet"};
     const Result made = run_acdf(words);
     ASSERT_EQ(made.code, 0) << made.err;
     const auto json = nlohmann::json::parse(read_text(folder / "out/sweep.json"));
-    EXPECT_EQ(json["kind"], "places");
+    EXPECT_EQ(json["kind"], "visibility");
     EXPECT_GT(json["conditions"], 20);
-    double places = 0.0, alone = 0.0, cdf = 0.0;
+    double visibility = 0.0, alone = 0.0, cdf = 0.0;
     for (const auto& row : json["rows"]) {
         const double variance = row["relative_variance"].is_null() ? 0.0 : row["relative_variance"].get<double>();
-        if (row["fit"] == "places") places = variance;
+        if (row["fit"] == "visibility") visibility = variance;
         if (row["fit"] == "variance") alone = variance;
         if (row["system"] == "full_cdf") cdf = variance;
     }
-    EXPECT_GT(places, 0.0);
-    EXPECT_GT(alone, 1.3 * places);
-    EXPECT_GT(cdf, 1.3 * places);
+    EXPECT_GT(visibility, 0.0);
+    EXPECT_GT(alone, 1.3 * visibility);
+    EXPECT_GT(cdf, 1.3 * visibility);
     const std::string command = json["recommendation"]["command"];
     EXPECT_EQ(command.compare(0, 11 + probe.size(), "acdf local " + probe), 0) << command;
     const std::string page = read_text(folder / "out/report.html");
-    EXPECT_NE(page.find("places of a scene"), std::string::npos);
-    EXPECT_NE(page.find("--scene " + mesh + " --places"), std::string::npos);
-    EXPECT_EQ(run_acdf({"sweep", probe, "-o", folder / "x", "--kind", "places"}).code, 2);
+    EXPECT_NE(page.find("positions of a scene"), std::string::npos);
+    EXPECT_NE(page.find("--scene " + mesh + " --visibility"), std::string::npos);
+    EXPECT_EQ(run_acdf({"sweep", probe, "-o", folder / "x", "--kind", "visibility"}).code, 2);
     EXPECT_EQ(run_acdf({"sweep", probe, "-o", folder / "x", "--scene", mesh}).code, 2);
-    EXPECT_EQ(run_acdf({"sweep", probe, "-o", folder / "x", "--kind", "places", "--scene", probe}).code, 1);
+    EXPECT_EQ(run_acdf({"sweep", probe, "-o", folder / "x", "--kind", "visibility", "--scene", probe}).code, 1);
 }
 
 // Local files of both shapes, each with what it costs in variance and the options that make it.

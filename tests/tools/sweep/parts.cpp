@@ -35,7 +35,7 @@ SweepRow row(const char* system, const char* fit, std::uint64_t bytes, double va
     return out;
 }
 
-/// Two fits, and rivals of which one wins at equal time, one loses, one is even and one is biased.
+/// Two fits, and baselines of which one wins at equal time, one loses, one is even and one is biased.
 Sweep made_up() {
     Sweep sweep;
     sweep.kind = SweepKind::local;
@@ -51,14 +51,14 @@ Sweep made_up() {
                   row("fast", "", 9000000, 0.012, {20, 22, 18, 20, 20, 21}),
                   row("even", "", 0, 0.006, {90, 120, 90, 110, 95, 108}),
                   row("hole", "", 500, HUGE_VAL, {1, 1, 1, 1, 1, 1})};
-    sweep.baseline = 4;
+    sweep.reference = 4;
     sweep.costs.shadow_ray_ns = 0.0;
     return sweep;
 }
 
 TEST(SweepAdvice, TheSmallestFileWhoseNoiseCannotBeSeen) {
     const Sweep sweep = made_up();
-    const Visibility v; // 1 % at 64 samples: at most 0.0064
+    const VisibleNoise v; // 1 % at 64 samples: at most 0.0064
     EXPECT_DOUBLE_EQ(v.largest_variance(), 0.0064);
     EXPECT_EQ(recommended_row(sweep.rows, v).row, 1u);
     EXPECT_TRUE(recommended_row(sweep.rows, v).reached);
@@ -91,13 +91,13 @@ TEST(SweepAdvice, SaysSoInWords) {
                                "beyond it you gain nothing visible.");
     EXPECT_EQ(advice.command, "acdf local probe.exr --budget 65536 -o probe.local.acdf");
     EXPECT_NE(advice.rule.find("0.0064"), std::string::npos) << advice.rule;
-    sweep.visibility.spp = 1;
+    sweep.visible.spp = 1;
     advice = advise(sweep);
     EXPECT_EQ(advice.sentence.rfind("No size tried gets below 1 % noise at 1 sample per pixel", 0), 0u)
         << advice.sentence;
     sweep = made_up();
     sweep.rows.erase(sweep.rows.begin() + 2, sweep.rows.begin() + 4);
-    sweep.baseline = 2;
+    sweep.reference = 2;
     EXPECT_EQ(advise(sweep).sentence.rfind("64 KiB is enough", 0), 0u) << advise(sweep).sentence;
 }
 
@@ -121,21 +121,19 @@ Sweep made_up_pictures() {
     add(row("full_cdf", "", 8000000, 0.0, {200, 220, 180, 200, 200, 210}), {3.75, 1.85, 5.85, 2.9});
     add(row("mis_compensation", "", 8000000, HUGE_VAL, {200, 220, 180, 200, 200, 210}),
         {HUGE_VAL, 0.5, HUGE_VAL, 2.0});
-    sweep.baseline = 3;
+    sweep.reference = 3;
     sweep.costs = {500.0, 20.0};
     return sweep;
 }
 
 TEST(SweepAdvice, PicturesDecideNotTheLightItself) {
     Sweep sweep = made_up_pictures();
-    const auto recommended = [&] {
-        return recommended_row(sweep.rows, sweep.visibility, sweep.costs, sweep.numbers);
-    };
+    const auto recommended = [&] { return recommended_row(sweep.rows, sweep.visible, sweep.costs, sweep.numbers); };
     EXPECT_EQ(recommended().row, 0u); // sqrt(4 / 3.75) is 1.03
     EXPECT_FALSE(recommended().reached);
-    sweep.rows[0].lit[hidden_company].mean = 3.3; // sqrt(3.3 / 2.9) is 1.07, in one situation
+    sweep.rows[0].lit[hidden_partner].mean = 3.3; // sqrt(3.3 / 2.9) is 1.07, in one situation
     EXPECT_EQ(recommended().row, 1u);
-    sweep.rows[1].lit[open_company].mean = 2.2;
+    sweep.rows[1].lit[open_partner].mean = 2.2;
     EXPECT_EQ(recommended().row, 2u);
     sweep.numbers = measure::Numbers::sobol; // where they are told, those
     EXPECT_EQ(recommended().row, 0u);
@@ -158,15 +156,15 @@ TEST(SweepAdvice, SaysWhatPicturesHave) {
         "4 KiB is enough: a diffuse surface has 25 % noise with it at 64 samples per pixel, and 24 % with the "
         "full_cdf; no other size or fit tried lowers it by more than 5 %.");
     ASSERT_EQ(advice.situations.size(), std::size_t{kSituations});
-    EXPECT_EQ(advice.situations[open_alone].rival, 3u);
-    EXPECT_EQ(advice.situations[open_company].rival, 4u);
+    EXPECT_EQ(advice.situations[open_alone].best_baseline, 3u);
+    EXPECT_EQ(advice.situations[open_partner].best_baseline, 4u);
     const double cost = (0.5 * (200 + 200 + 20) + 500) / (0.5 * (100 + 100 + 20) + 500);
-    EXPECT_NEAR(advice.situations[open_company].over_rival.value, 0.5 / 2.0 * cost, 1e-9);
-    const std::string all = advice.situations[open_alone].sentence + advice.situations[open_company].sentence;
+    EXPECT_NEAR(advice.situations[open_partner].over_best_baseline.value, 0.5 / 2.0 * cost, 1e-9);
+    const std::string all = advice.situations[open_alone].sentence + advice.situations[open_partner].sentence;
     for (const char* part :
          {"50 %, 25 %, 12 % noise at 16, 64, 256 independent samples (median point: 35 %, 18 %, 8.8 %)",
           "12 % at 64 of a scrambled Sobol' sequence", "times less noise than the full_cdf",
-          "times more noise than the best rival, the mis_compensation"})
+          "times more noise than the best baseline, the mis_compensation"})
         EXPECT_NE(all.find(part), std::string::npos) << part << "\n" << all;
     const std::string html = sweep_html(sweep);
     EXPECT_EQ(html.find("1/"), std::string::npos);
@@ -176,27 +174,27 @@ TEST(SweepAdvice, SaysWhatPicturesHave) {
     EXPECT_EQ(noise_ratio_text(1.004), "the same noise as");
 }
 
-TEST(SweepAdvice, TellsWhichRivalsWin) {
+TEST(SweepAdvice, TellsWhichBaselinesWin) {
     const Sweep sweep = made_up();
     const Advice advice = advise(sweep);
     std::map<std::string, Verdict> verdicts;
-    for (const RivalComparison& c : advice.comparisons) verdicts[sweep.rows[c.row].system] = c.verdict;
+    for (const BaselineComparison& c : advice.comparisons) verdicts[sweep.rows[c.row].system] = c.verdict;
     EXPECT_EQ(verdicts["full_cdf"], Verdict::ours);
-    EXPECT_EQ(verdicts["fast"], Verdict::rival);
+    EXPECT_EQ(verdicts["fast"], Verdict::baseline);
     EXPECT_EQ(verdicts["even"], Verdict::even);
     EXPECT_EQ(verdicts["hole"], Verdict::ours); // biased, however fast
-    const RivalComparison& fast = advice.comparisons[1];
+    const BaselineComparison& fast = advice.comparisons[1];
     EXPECT_NEAR(fast.variance, 2.0, 1e-12);
     EXPECT_NEAR(fast.time.value, 0.2, 1e-12); // in each round a fifth
     EXPECT_NEAR(fast.equal_time.value, 0.4, 1e-12);
     std::string all;
     for (const std::string& finding : advice.findings) all += finding + "\n";
-    EXPECT_NE(all.find("At equal time a rival wins: fast 0.4 (0.4 to 0.4) with 137 times the memory."),
+    EXPECT_NE(all.find("At equal time a baseline wins: fast 0.4 (0.4 to 0.4) with 137 times the memory."),
               std::string::npos)
         << all;
     EXPECT_NE(all.find("Too close to call at equal time: even"), std::string::npos) << all;
     EXPECT_NE(all.find("Hole is biased by itself"), std::string::npos) << all;
-    EXPECT_NE(all.find("Sample for sample no rival is less noisy"), std::string::npos) << all;
+    EXPECT_NE(all.find("Sample for sample no baseline is less noisy"), std::string::npos) << all;
 }
 
 /// Lines of a CSV of which no field holds a line break; fields unquoted.
@@ -336,7 +334,7 @@ TEST(SweepRows, OfATinyProbeAreWhatTheFilesHave) {
             EXPECT_LE(lit.median, lit.worst) << r.label;
             EXPECT_EQ(std::isinf(lit.sobol), std::isinf(lit.mean)) << r.label;
         }
-        EXPECT_GE(r.lit[open_alone].mean, r.system == "full_cdf" ? 0.5 : 0.0) << r.label; // half is drawn in vain
+        EXPECT_GE(r.lit[open_alone].mean, r.system == "full_cdf" ? 0.5 : 0.0) << r.label; // half is sampled in vain
         if (r.fit == "variance") {
             build::EnvironmentOptions options;
             options.fit.goal.kind = compress::Goal::Kind::budget;
@@ -348,11 +346,11 @@ TEST(SweepRows, OfATinyProbeAreWhatTheFilesHave) {
     }
     EXPECT_EQ(fits["variance"], 2);
     EXPECT_GE(fits["cdf"], 1);
-    for (const char* rival :
+    for (const char* baseline :
          {"full_cdf", "alias_table", "hierarchical_warp", "downsampled_cdf", "mis_compensation"})
-        EXPECT_GE(systems[rival], 1) << rival;
-    EXPECT_EQ(sweep.rows[sweep.baseline].system, "full_cdf");
-    EXPECT_EQ(sweep.rows[sweep.baseline].relative_variance, 0.0);
+        EXPECT_GE(systems[baseline], 1) << baseline;
+    EXPECT_EQ(sweep.rows[sweep.reference].system, "full_cdf");
+    EXPECT_EQ(sweep.rows[sweep.reference].relative_variance, 0.0);
     EXPECT_GE(sweep.pictures.size(), 3u);
     expect_consistent(sweep);
 }

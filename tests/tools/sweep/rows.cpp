@@ -25,7 +25,7 @@ SweepOptions small_sweep() {
     return options;
 }
 
-TEST(SweepRows, LocalFilesBesideTheirRivals) {
+TEST(SweepRows, LocalFilesBesideTheirBaselines) {
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
     SweepOptions options = small_sweep();
     const Sweep sweep = sweep_local(builder::target_of(target, {}), {}, options);
@@ -45,10 +45,10 @@ TEST(SweepRows, LocalFilesBesideTheirRivals) {
     EXPECT_LT(by["acdf"]->sobol, by["full_cdf"]->sobol);
 }
 
-// A set of a single point is uniform: then drawn variances are those that sums tell.
+// A set of a single point is uniform: then sampled variances are those that sums tell.
 TEST(SweepRows, SobolOfOneSampleIsWhatTheSumsTell) {
     SweepOptions options = small_sweep();
-    options.visibility.spp = 1;
+    options.visible.spp = 1;
     options.seeds = 2000;
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
     for (const SweepRow& r : sweep_local(builder::target_of(target, {}), {}, options).rows)
@@ -60,12 +60,12 @@ TEST(SweepRows, SobolOfOneSampleIsWhatTheSumsTell) {
 TEST(SweepRows, OfABrdf) {
     const auto brdf = input::open_brdf("ggx:alpha=0.3");
     SweepOptions options = small_sweep();
-    options.visibility.spp = 1; // uniform numbers, as above; samples that are lost below the surface count
+    options.visible.spp = 1; // uniform numbers, as above; samples that are lost below the surface count
     options.seeds = 3000;
     const Sweep sweep = sweep_brdf(*brdf, options);
     std::map<std::string, const SweepRow*> by;
     for (const SweepRow& r : sweep.rows) by[r.system] = &r;
-    EXPECT_EQ(sweep.rows[sweep.baseline].system, "full_table");
+    EXPECT_EQ(sweep.rows[sweep.reference].system, "full_table");
     EXPECT_LT(by["acdf"]->relative_variance, by["cosine"]->relative_variance);
     EXPECT_LT(by["full_table"]->relative_variance, by["cosine"]->relative_variance);
     EXPECT_GT(by["full_table"]->bytes, 60000000u);

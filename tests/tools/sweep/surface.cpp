@@ -1,12 +1,12 @@
-// Variances of a diffuse surface: by summation, by drawing, and where light is hidden.
+// Variances of a diffuse surface: by summation, by sampling, and where light is hidden.
 #include "tests/inputs/synthetic.h"
 
 #include "measure/samplers/light_samplers.h"
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 #include "tools/render/scene_file.h"
 #include "tools/sweep/occluders.h"
 #include "tools/sweep/surface.h"
-#include "tools/sweep/surface_draws.h"
+#include "tools/sweep/surface_samples.h"
 
 #include <gtest/gtest.h>
 
@@ -18,12 +18,12 @@
 namespace acdf::tools {
 namespace {
 
-TEST(SweepSurface, AgreesWithTheClosedFormsOfRivals) {
+TEST(SweepSurface, AgreesWithTheClosedFormsOfBaselines) {
     const compress::Target target = acdf_test::noise_target(48, 24, 5, 1.0, 0.1);
     const std::vector<build::Normal> normals = build::random_normals(5);
     const measure::LocalFullCdf full(target);
     const auto sampler = measure::full_cdf_sampler(target);
-    const std::vector<float> density = texel_densities(target, *sampler);
+    const std::vector<float> density = texel_pdfs(target, *sampler);
     const SurfaceVariances got = summary(point_variances(target, density, in_the_open(normals)), Scale::own);
     std::vector<double> each;
     for (const build::Normal& n : normals) each.push_back(full.relative_variance(n.data()));
@@ -34,9 +34,9 @@ TEST(SweepSurface, AgreesWithTheClosedFormsOfRivals) {
     const std::vector<float> nothing(density.size(), 0.0f);
     const SurfaceVariances dark = summary(point_variances(target, nothing, in_the_open({normals[0]})), Scale::own);
     EXPECT_TRUE(std::isinf(dark.alone.mean));
-    // All that is drawn is the cosine's: half as many samples of it as are counted.
+    // All that is sampled is the cosine's: half as many samples of it as are counted.
     const double of_cosine = measure::CosineHemisphere(target).relative_variance(normals[0].data());
-    EXPECT_NEAR(dark.company.mean, 2.0 * of_cosine, 1e-9 * of_cosine);
+    EXPECT_NEAR(dark.partner.mean, 2.0 * of_cosine, 1e-9 * of_cosine);
     const Lit even = spread_of({1.0, 2.0, 4.0, 9.0});
     EXPECT_EQ(even.mean, 4.0);
     EXPECT_EQ(even.median, 3.0);
@@ -46,13 +46,13 @@ TEST(SweepSurface, AgreesWithTheClosedFormsOfRivals) {
 TEST(SweepSurface, WhatIsHiddenDoesNotCount) {
     const compress::Target target = acdf_test::noise_target(48, 24, 5, 1.0, 0.1);
     const auto sampler = measure::full_cdf_sampler(target);
-    const std::vector<float> density = texel_densities(target, *sampler);
+    const std::vector<float> density = texel_pdfs(target, *sampler);
     SurfacePoint point;
     const PointVariance open = point_variances(target, density, {point}).front();
     point.hidden.assign(density.size(), false);
     const PointVariance same = point_variances(target, density, {point}).front();
     EXPECT_EQ(open.alone, same.alone);
-    EXPECT_EQ(open.company, same.company);
+    EXPECT_EQ(open.partner, same.partner);
     compress::Target dark = target;
     for (std::size_t i = 0; i < dark.values.size(); i += 3) {
         dark.values[i] = 0.0f;
@@ -63,7 +63,7 @@ TEST(SweepSurface, WhatIsHiddenDoesNotCount) {
     EXPECT_LT(hidden.irradiance, 0.8 * open.irradiance);
     EXPECT_NEAR(hidden.irradiance, without.irradiance, 1e-12 * open.irradiance);
     EXPECT_NEAR(hidden.alone, without.alone, 1e-9 * open.alone);
-    EXPECT_NEAR(hidden.company, without.company, 1e-9 * open.company);
+    EXPECT_NEAR(hidden.partner, without.partner, 1e-9 * open.partner);
     // E^2 + (0.1 mean E)^2: a point without light does not decide.
     const Lit scaled = summary({{1.0, 0.5, 0.5}, {0.0, 0.0, 0.0}}, Scale::picture).alone;
     EXPECT_NEAR(scaled.worst, 0.5 / (1.0 + 0.05 * 0.05), 1e-12);
@@ -107,23 +107,24 @@ TEST(SweepSurface, TheOccludersAreThoseOfTheDemoScene) {
     EXPECT_LT(share, 0.6);
 }
 
-// A set of a single point is uniform: then drawn variances are those that sums tell.
+// A set of a single point is uniform: then sampled variances are those that sums tell.
 TEST(SweepSurface, DrawnVariancesAreThoseOfTheSums) {
     const compress::Target target = acdf_test::noise_target(48, 24, 5, 1.0, 0.1);
     const auto sampler = measure::full_cdf_sampler(target);
     const std::vector<SurfacePoint> points = behind_occluders(target, 12);
-    const auto exact = point_variances(target, texel_densities(target, *sampler), points);
+    const auto exact = point_variances(target, texel_pdfs(target, *sampler), points);
     const SurfaceVariances sums = summary(exact, Scale::picture);
-    const DrawnVariances two = sobol_variances(target, *sampler, points, exact, Scale::picture, 2, 1500);
-    // Of two Sobol' points: less than of two independent ones; in company a set of one each: exactly those.
+    const SampledVariances two = sobol_variances(target, *sampler, points, exact, Scale::picture, 2, 1500);
+    // Of two Sobol' points: less than of two independent ones; with an MIS partner a set of one each: exactly
+    // those.
     EXPECT_LT(two.alone, sums.alone.mean);
-    EXPECT_NEAR(two.company, sums.company.mean, 0.1 * sums.company.mean);
-    const DrawnVariances many = sobol_variances(target, *sampler, points, exact, Scale::picture, 64, 100);
+    EXPECT_NEAR(two.partner, sums.partner.mean, 0.1 * sums.partner.mean);
+    const SampledVariances many = sobol_variances(target, *sampler, points, exact, Scale::picture, 64, 100);
     EXPECT_LT(many.alone, 0.7 * sums.alone.mean);
-    EXPECT_LT(many.company, 0.7 * sums.company.mean);
-    const DrawnVariances again = sobol_variances(target, *sampler, points, exact, Scale::picture, 64, 100);
+    EXPECT_LT(many.partner, 0.7 * sums.partner.mean);
+    const SampledVariances again = sobol_variances(target, *sampler, points, exact, Scale::picture, 64, 100);
     EXPECT_EQ(many.alone, again.alone);
-    EXPECT_EQ(many.company, again.company);
+    EXPECT_EQ(many.partner, again.partner);
 }
 
 } // namespace

@@ -20,7 +20,7 @@ using compress::Target;
 
 constexpr int kSteps = 64; // subsamples of a texel along phi and along z
 
-/// All fields but the cells, slowly: f/p and the rest at 4096 places of every texel.
+/// All fields but the cells, slowly: f/p and the rest at 4096 points of every texel.
 Accuracy quadrature(const EnvironmentView& view, const Target& target) {
     Accuracy a;
     for (std::uint32_t r = 0; r < target.rows; ++r)

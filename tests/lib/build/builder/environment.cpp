@@ -247,7 +247,7 @@ TEST(Builder, MakesWhatTheProgramMakesForARenderer) {
     for (const Renderer& renderer : renderers()) {
         EnvironmentOptions options;
         options.target = renderer.target;
-        options.company = renderer.company(options);
+        options.mis = renderer.partner(options);
         const bool square = renderer.target.domain == Domain::octahedral;
         options.source = {"p.pfm", input::file_sha256(folder / "p.pfm"), "",
                           std::string("--domain ") + (square ? "octahedral " : "latlong ")};

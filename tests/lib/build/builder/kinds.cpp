@@ -124,14 +124,14 @@ TEST(BuilderLocal, Misuse) {
     refused("a wild shape", [](LocalOptions& o) { o.shape = static_cast<LocalShape>(9); });
     refused("fast without sharing", [](LocalOptions& o) { o.shape = LocalShape::fast, o.sharing = false; });
     refused("fast and a bound", [](LocalOptions& o) { o.shape = LocalShape::fast, o.max_weight = 9.0; });
-    refused("fast and a company", [](LocalOptions& o) {
+    refused("fast and an MIS partner", [](LocalOptions& o) {
         o.shape = LocalShape::fast;
-        o.company.kind = ACDF_COMPANY_COSINE;
+        o.mis.kind = ACDF_PARTNER_COSINE;
     });
-    refused("fast and places", [](LocalOptions& o) {
+    refused("fast and visibility cells", [](LocalOptions& o) {
         o.shape = LocalShape::fast;
-        o.places.point = [](std::uint64_t, PlacePoint&) { return true; };
-        o.places.occluded = [](const PlacePoint&, const float*) { return false; };
+        o.visibility.point = [](std::uint64_t, VisibilityPoint&) { return true; };
+        o.visibility.occluded = [](const VisibilityPoint&, const float*) { return false; };
     });
     refused("a share", [](LocalOptions& o) { o.cosine_share = 1.0; });
     refused("a NaN share", [](LocalOptions& o) { o.cosine_share = kNan; });

@@ -171,7 +171,7 @@ TEST(InputProjection, RoundTrip) {
             const ImagePoint p = to_image(c.map, direction(expected));
             ASSERT_TRUE(p.u >= 0.0 && p.u < 1.0 && p.v >= 0.0 && p.v < 1.0) << c.name;
             Direction d;
-            // The rim of a disc is one direction, drawn a rounding error inside or outside the disc.
+            // The rim of a disc is one direction, sampled a rounding error inside or outside the disc.
             if (!to_direction(c.map, p.u, p.v, d)) {
                 ASSERT_LT(length(expected - Vec{-1, 0, 0}), 1e-6) << c.name;
                 continue;

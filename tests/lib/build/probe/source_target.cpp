@@ -89,7 +89,7 @@ Summed sum_over(const Map& map, const std::vector<float>& rgb, bool bilinear, co
                 int points) {
     double first = 0.0, second = 0.0, largest = 0.0, lost = 0.0;
     const auto value = [&](int x, int y, int column, int row) {
-        const build::TexelPlace at = build::texel_beside(map, x, y, column, row);
+        const build::TexelPosition at = build::texel_beside(map, x, y, column, row);
         return double{rgb[3 * (static_cast<std::size_t>(at.row) * static_cast<std::size_t>(map.width) +
                                static_cast<std::size_t>(at.column))]};
     };
@@ -267,7 +267,7 @@ TEST(SourceLookup, NeighboursAcrossBordersAreNeighboursOnTheSphere) {
                 ASSERT_TRUE(build::to_direction(map, (x + 0.5) / map.width, (y + 0.5) / map.height, here));
                 const int steps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
                 for (const auto& step : steps) {
-                    const build::TexelPlace at = build::texel_beside(map, x, y, x + step[0], y + step[1]);
+                    const build::TexelPosition at = build::texel_beside(map, x, y, x + step[0], y + step[1]);
                     ASSERT_TRUE(build::to_direction(map, (at.column + 0.5) / map.width, (at.row + 0.5) / map.height,
                                                     there));
                     const double distance = std::sqrt((here.x - there.x) * (here.x - there.x) +

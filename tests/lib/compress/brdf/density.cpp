@@ -1,4 +1,4 @@
-// Fitted BRDF files: what is drawn is what is told, it covers the light, and it is where the light is.
+// Fitted BRDF files: what is sampled is what is told, it covers the light, and it is where the light is.
 #include "tests/inputs/brdf_files.h"
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
@@ -139,7 +139,7 @@ TEST_P(BrdfDensity, coversTheLightAndIntegratesTo1) {
 
 // Nearly opposite to this view lies a direction whose half-vector floats have at right angles to both: its density
 // has no bound.
-TEST(BrdfDensities, areMeasuredNextToTheOppositeOfTheView) {
+TEST(BrdfPdfs, areMeasuredNextToTheOppositeOfTheView) {
     const MadeBrdf& brdf = made(anisotropic);
     const View view = acdf::build::random_views(500, false).at(335);
     const auto measured = acdf::build::measure_views(brdf.file, brdf.reflected, {view}, Sides::any);

@@ -12,7 +12,7 @@ using namespace acdf::compress;
 
 namespace {
 
-/// Bumps at different places of a grid of squares of unequal measure.
+/// Bumps at different points of a grid of squares of unequal measure.
 struct Problem {
     SharedGrid grid;
     std::vector<SharedTarget> targets;

@@ -1,4 +1,4 @@
-// The density of fitted local environment maps: what is drawn is what is told, and it covers the light.
+// The density of fitted local environment maps: what is sampled is what is told, and it covers the light.
 #include "tests/inputs/local_maps.h"
 #include "tests/inputs/sanitized.h"
 
@@ -253,10 +253,10 @@ Normal within(const Target& target, std::uint32_t column, std::uint32_t row, std
         return random() % 4 == 0 ? (t < 0.5 ? 1e-5 : 1.0 - 1e-5) : 1e-5 + (1.0 - 2e-5) * t;
     };
     const double down = row + place();
-    return place_direction(target, column + place(), down);
+    return direction_at_position(target, column + place(), down);
 }
 
-/// Wherever light is above the horizon, however little, it can be drawn.
+/// Wherever light is above the horizon, however little, it can be sampled.
 TEST_P(Maps, CoverTheLight) {
     const Target& target = map_->target;
     std::vector<std::size_t> lit, bright;
@@ -371,7 +371,7 @@ TEST_P(Maps, StrataStayStrata) {
             if (source.what == ACDF_LOCAL_NOTHING) break;
             AcdfRange range[2];
             acdf_sphere_ranges(columns, rows, range);
-            if (source.what == ACDF_LOCAL_FAST) acdf_local_fast_draw(&local, &source, 1, u, range);
+            if (source.what == ACDF_LOCAL_FAST) acdf_local_fast_sample_cell(&local, &source, 1, u, range);
             else if (source.what == ACDF_LOCAL_BLEND) acdf_local_blend_sample(&local, &source, u, range);
             else acdf_tree_sample(local.environment.tree, source.root, u, range);
             const bool same = i > 0 && range[0].low == before[0].low && range[1].low == before[1].low &&

@@ -60,11 +60,11 @@ TEST(FastShape, ATreeServesNormalsWhoseBinsAreNotStored) {
     EXPECT_LT(accuracy.relative_variance, 1.2 * accuracy.relative_variance_full_cdf);
 }
 
-TEST(FastShape, RefusesACompanyAndBoundsOnWeights) {
+TEST(FastShape, RefusesAPartnerAndBoundsOnWeights) {
     LocalSize size;
     size.shape = LocalShape::fast;
     const Target target = suns_target(32, 16);
-    EXPECT_THROW(fit_local(target, octahedral_bins(2), size, {}, {ACDF_COMPANY_COSINE}), std::invalid_argument);
+    EXPECT_THROW(fit_local(target, octahedral_bins(2), size, {}, {ACDF_PARTNER_COSINE}), std::invalid_argument);
     size.max_weight = 10.0;
     EXPECT_THROW(fit_local(target, octahedral_bins(2), size), std::invalid_argument);
 }

@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(All, OneLamp,
                          });
 
 /// The cosine to the farthest and to the nearest place of a box, by trying many.
-TEST(Tiles, LargestCosineIsThatOfNoPlaceLess) {
+TEST(Tiles, LargestCosineIsThatOfNoPositionLess) {
     const Target target = sphere_target(24, 12, smooth_sky);
     std::mt19937_64 random(4);
     for (int i = 0; i < 2000; ++i) {
@@ -202,27 +202,28 @@ TEST(LocalFit, RefusesWhatIsDarkAndGridsThatShare) {
 TEST(LocalFit, LightsAreSmallAndTold) {
     const LocalMap map(suns_target(256, 128), octahedral_bins(5), sized(150, 3000));
     const AcdfLocal local = map.view().data();
-    ASSERT_GT(local.light_count, 0u);
+    ASSERT_GT(local.bright_tile_count, 0u);
     double share = 0.0;
-    for (std::uint32_t k = 0; k < local.light_count; ++k) {
-        EXPECT_LE(local.lights[k].radius, static_cast<float>(LightRule{}.radius) + 1e-3f);
-        share += static_cast<double>(local.lights[k].share);
+    for (std::uint32_t k = 0; k < local.bright_tile_count; ++k) {
+        EXPECT_LE(local.bright_tiles[k].radius, static_cast<float>(BrightTileRule{}.radius) + 1e-3f);
+        share += static_cast<double>(local.bright_tiles[k].share);
     }
     EXPECT_GT(share, 0.5); // most of the flux is that of the suns
     EXPECT_LT(share, 1.05);
 }
 
 /// A sky that ends at the horizon: normals below see so little of it that all of it would alarm, and tiles are not
-/// spent on more lights than there may be.
+/// spent on more bright tiles than there may be.
 TEST(LocalFit, TilesAreNotSpentOnLightsInVain) {
     ACDF_NOT_SANITIZED();
     const Target sky = sphere_target(256, 128, [](double, double z) { return z > -0.02 ? 1.0 + z : 0.0; });
     const NormalBins bins = octahedral_bins(12);
     const Worth worths = worth(sky, bins, irradiance(light_points(sky), bins));
     constexpr std::uint32_t count = 1000;
-    ASSERT_GT(divide_tiles(sky, worths, count).lights, 2 * ACDF_MAX_LIGHTS); // by the rule for most probes
+    ASSERT_GT(divide_tiles(sky, worths, count).bright_tiles,
+              2 * ACDF_MAX_BRIGHT_TILES); // by the rule for most probes
     const LocalFit fit = fit_local(sky, bins, {count, 16384});
-    EXPECT_LE(fit.tiles.lights, 2 * ACDF_MAX_LIGHTS);
+    EXPECT_LE(fit.tiles.bright_tiles, 2 * ACDF_MAX_BRIGHT_TILES);
     double largest = 0.0; // of those that hold light
     for (const Box& tile : fit.tiles.tiles)
         if (tile.begin[0] < sky.rows / 2 && tile.length(1) < sky.columns)

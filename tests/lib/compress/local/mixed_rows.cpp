@@ -29,7 +29,7 @@ struct Tiled {
         curves = std::make_unique<TileCurves>(target, tiles.tiles, std::vector<double>(tiles.tiles.size(), 1.0));
         curves->refine(1e-4);
         cascade = std::make_unique<TileCascade>(tiles, *curves, 1e-4, WholeTree::of_tiles);
-        light = std::make_unique<TileLight>(target, tiles, *cascade, std::vector<AcdfLight>());
+        light = std::make_unique<TileLight>(target, tiles, *cascade, std::vector<AcdfBrightTile>());
     }
 
     TileParts own_rows() const {
@@ -42,7 +42,7 @@ struct Tiled {
     }
 };
 
-/// Of what a normal draws from the mixture of its bins.
+/// Of what a normal samples from the mixture of its bins.
 struct Mixed {
     double moment = 0.0; ///< E[(f/p)^2] over the square of the mean, as far as tiles tell
     double vain = 0.0;   ///< share of the samples below the horizon

@@ -25,7 +25,7 @@ void expect_sizes(const Target& target, std::uint32_t count, double most_ratio, 
     std::vector<double> worth_of_tiles(tiles.tiles.size(), 1.0 / integral(target));
     worth_of_tiles[0] = 0.0; // stays whole
     TileCurves curves(target, tiles.tiles, worth_of_tiles);
-    // Behind a tree of the whole environment that ends between two places for integers of four bytes, too.
+    // Behind a tree of the whole environment that ends between two offsets for integers of four bytes, too.
     const std::vector<std::uint8_t> before =
         whole == WholeTree::own ? std::vector<std::uint8_t>(66) : std::vector<std::uint8_t>();
     TileSizer sizer(tiles, curves, most_ratio, whole, before.size());

@@ -1,7 +1,7 @@
 // Opening BRDFs by name: what each file is told apart by, tables of numbers, and real measurements.
 #include "input/brdf/table.h"
 #include "tests/inputs/folder.h"
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/lib/input/brdf/brdf.h"
 
 #include <algorithm>

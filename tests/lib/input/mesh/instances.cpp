@@ -41,11 +41,11 @@ TEST(Instances, AreReadInTheOrderOfTheirMeshes) {
     const std::vector<Instances> read = read_instances(folder / "a.instances");
     ASSERT_EQ(read.size(), 2u);
     EXPECT_EQ(read[0].mesh, folder / "a tree.obj");
-    ASSERT_EQ(read[0].places.size(), 2u);
-    EXPECT_EQ(read[0].places[0].rows[1], (Row{0, 1, 0, 3}));
-    EXPECT_EQ(read[0].places[1].rows[2], (Row{0, 0, 2, 0}));
-    EXPECT_EQ(read[1].places.at(0).rows[0], (Row{0, -1, 0, 0}));
-    EXPECT_NEAR(read[1].places.at(0).determinant(), 2.0, 1e-15);
+    ASSERT_EQ(read[0].placements.size(), 2u);
+    EXPECT_EQ(read[0].placements[0].rows[1], (Row{0, 1, 0, 3}));
+    EXPECT_EQ(read[0].placements[1].rows[2], (Row{0, 0, 2, 0}));
+    EXPECT_EQ(read[1].placements.at(0).rows[0], (Row{0, -1, 0, 0}));
+    EXPECT_NEAR(read[1].placements.at(0).determinant(), 2.0, 1e-15);
     EXPECT_EQ(scene_files(folder / "a.instances"),
               (std::vector<std::string>{folder / "a.instances", folder / "a tree.obj", folder / "rock.ply"}));
 }
@@ -101,7 +101,7 @@ TEST(Instances, NormalsOfCornersGoByTheInverseTransposed) {
     write_text(folder / "s.instances", "1 0 0 0 0 1 0 0 0 0 -4 0 s.obj\n");
     const Triangles t = read_triangles(folder / "s.instances", UpAxis::z);
     ASSERT_EQ(t.count(), 1u);
-    // Corners 2 and 3 have changed places, as the triangle is mirrored; all normals point down.
+    // Corners 2 and 3 have changed placements, as the triangle is mirrored; all normals point down.
     const std::array<double, 3> wanted[3] = {{0, 0, -1}, to_unit({0, -0.6, -0.2}), to_unit({0.6, 0, -0.2})};
     for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(double{t.corners[c].normal[k]}, wanted[c][k], 1e-6) << c;

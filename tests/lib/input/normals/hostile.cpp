@@ -164,7 +164,7 @@ TEST(SceneHostile, TruncatedAnywhere) {
     }
 }
 
-// An importer takes what is left of a PLY file: a mesh with holes, where the places that it hides light from are
+// An importer takes what is left of a PLY file: a mesh with holes, where the positions that it hides light from are
 // others.
 TEST(SceneHostile, PlyFilesThatAreCutShortAreRefused) {
     const Folder folder;

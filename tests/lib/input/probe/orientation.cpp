@@ -1,6 +1,6 @@
 // Images that are stored turned or mirrored are read upright.
 #include "input/probe/image_header.h"
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/lib/input/write.h"
 
 #include <gtest/gtest.h>

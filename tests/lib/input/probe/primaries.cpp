@@ -6,6 +6,7 @@
 #include <OpenEXR/ImfRgbaFile.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace {
@@ -75,6 +76,44 @@ TEST(Primaries, FilesAreFittedByTheirOwnLuminance) {
         write_image(path, with(kRec709, 3, OIIO::TypeDesc::HALF), latlong_sky(32).rgb);
         EXPECT_TRUE(read_probe(path).warnings.empty());
         EXPECT_EQ(fitted(path, {}).r, builder::ChannelWeights().r);
+    }
+}
+
+/// A half image of n x m texels with an overflowing one.
+void write_bright(const std::string& path, const std::vector<float>& chromaticities, int width, int height) {
+    OIIO::ImageSpec spec = with(chromaticities, 3, OIIO::TypeDesc::HALF);
+    spec.width = spec.full_width = width;
+    spec.height = spec.full_height = height;
+    std::vector<float> rgb(3 * static_cast<std::size_t>(width * height), 0.5f);
+    rgb[0] = rgb[1] = rgb[2] = std::numeric_limits<float>::infinity();
+    write_image(path, spec, rgb);
+}
+
+// Six files or a strip of six squares: one luminance, and the largest half where texels overflowed.
+TEST(Primaries, FacesOfCubesKeepTheirLuminanceAndTheirHalfs) {
+    const Folder folder;
+    std::string six;
+    for (const char* name : {"0.exr", "1.exr", "2.exr", "3.exr", "4.exr", "5.exr"}) {
+        write_bright(folder / name, kAcesCg, 8, 8);
+        six += (six.empty() ? "" : ",") + (folder / name);
+    }
+    write_bright(folder / "strip.exr", kAcesCg, 48, 8);
+    ProbeOptions options;
+    options.bad_pixels = acdf::build::BadPixels::clamp;
+    ASSERT_TRUE(parse_faces("directx", options.faces.emplace()));
+    for (const std::string& source : {six, folder / "strip.exr"}) {
+        const Probe probe = read_probe(source, options);
+        ASSERT_TRUE(probe.luminance) << source;
+        EXPECT_NEAR(probe.luminance->r, 0.2722, 2e-4);
+        // Resampled; 0.5 if the largest finite texel stood for it.
+        EXPECT_GT(*std::max_element(probe.rgb.begin(), probe.rgb.end()), 1e4f) << source;
+    }
+    write_bright(folder / "3.exr", kRec709, 8, 8);
+    try {
+        read_probe(six, options);
+        ADD_FAILURE() << "was read";
+    } catch (const Error& error) {
+        EXPECT_CONTAINS(std::string(error.what()), "3.exr: its primaries are not those of the first");
     }
 }
 

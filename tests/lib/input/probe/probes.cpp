@@ -1,5 +1,5 @@
 // Real probes, where they are at hand (ACDF_TEST_DATA).
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/lib/input/write.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The alias method draws each of n as often as its mass says.
+// The alias method samples each of n as often as its mass says.
 #include "measure/samplers/alias_choices.h"
 
 #include <gtest/gtest.h>
@@ -27,18 +27,18 @@ TEST(AliasChoices, StandForMassesInAll) {
         const std::vector<double> mass = uneven(count, count);
         const std::vector<AliasChoice> choices = alias_choices(mass);
         ASSERT_EQ(choices.size(), count);
-        std::vector<double> drawn(count), rounded(count, 1e-9); // each choice is a float
+        std::vector<double> sampled(count), rounded(count, 1e-9); // each choice is a float
         for (std::size_t i = 0; i < count; ++i) {
             ASSERT_TRUE(choices[i].keep >= 0.0f && choices[i].keep <= 1.0f) << i;
             ASSERT_LT(choices[i].alias, count) << i;
-            drawn[i] += double{choices[i].keep};
-            drawn[choices[i].alias] += 1.0 - double{choices[i].keep};
+            sampled[i] += double{choices[i].keep};
+            sampled[choices[i].alias] += 1.0 - double{choices[i].keep};
             rounded[i] += 0x1p-24;
             rounded[choices[i].alias] += 0x1p-24;
         }
         for (std::size_t i = 0; i < count; ++i) {
-            EXPECT_NEAR(drawn[i], mass[i], rounded[i]) << i << " of " << count;
-            EXPECT_EQ(drawn[i] > 0.0, mass[i] > 0.0) << i << " of " << count;
+            EXPECT_NEAR(sampled[i], mass[i], rounded[i]) << i << " of " << count;
+            EXPECT_EQ(sampled[i] > 0.0, mass[i] > 0.0) << i << " of " << count;
         }
     }
 }

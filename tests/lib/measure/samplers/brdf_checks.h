@@ -65,8 +65,8 @@ private:
 
 /// `sampler` has sample(wo, u) and pdf(wo, wi). `fine`: squares of the sum along a bin.
 template <class Sampler>
-void expect_samples_as_its_density(const Sampler& sampler, const acdf::compress::View& view,
-                                   const std::string& name, int fine = 24, std::uint32_t samples = 40000) {
+void expect_samples_as_its_pdf(const Sampler& sampler, const acdf::compress::View& view, const std::string& name,
+                               int fine = 24, std::uint32_t samples = 40000) {
     const HalfBins bins(view);
     const auto pdf = [&](const double wo[3], const double wi[3]) { return sampler.pdf(wo, wi); };
     std::vector<double> probability = bins.integrate(pdf, fine);

@@ -1,10 +1,10 @@
 // Estimators: that none is biased, also where light is hidden, and that variances are those that theory knows.
+#include "tests/lib/measure/samplers/baselines.h"
 #include "tests/lib/measure/samplers/light_sampler_checks.h"
-#include "tests/lib/measure/samplers/rivals.h"
 
 #include "measure/samplers/estimators.h"
 #include "measure/samplers/light_samplers.h"
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 #include "measure/samplers/stratification.h"
 #include "measure/samplers/stratified_map.h"
 

@@ -35,8 +35,8 @@ void to_local(const ShadingPoint& point, const float w[3], float out[3]) {
         out[i] = static_cast<float>(axis[i][0] * w[0] + axis[i][1] * w[1] + axis[i][2] * w[2]);
 }
 
-/// The share of samples that are drawn at all.
-double drawn(const LightSampler& sampler, const ShadingPoint& at) {
+/// The share of samples that are taken at all.
+double sampled(const LightSampler& sampler, const ShadingPoint& at) {
     const auto point = sampler.point_sampler();
     point->move_to(at);
     std::mt19937_64 random(71);
@@ -48,7 +48,7 @@ double drawn(const LightSampler& sampler, const ShadingPoint& at) {
     return count / 20000.0;
 }
 
-TEST(FileSamplers, EnvironmentAndLocalFilesDrawByTheirDensity) {
+TEST(FileSamplers, EnvironmentAndLocalFilesSampleByTheirPdf) {
     const Target t = noise_target(64, 32, 9, 1.0);
     LocalFileOptions options;
     options.size = {40, 1500};
@@ -67,8 +67,8 @@ TEST(FileSamplers, EnvironmentAndLocalFilesDrawByTheirDensity) {
     for (const ShadingPoint& point : some_points()) {
         SamplerCheck check;
         check.disagreeing = 1e-4;
-        expect_samples_as_its_density(*everywhere, point, {t.columns, t.rows}, "environment", check);
-        expect_samples_as_its_density(*local, point, {t.columns, t.rows}, "local", check);
+        expect_samples_as_its_pdf(*everywhere, point, {t.columns, t.rows}, "environment", check);
+        expect_samples_as_its_pdf(*local, point, {t.columns, t.rows}, "local", check);
         const auto own = local->point_sampler();
         own->move_to(point);
         const float w[3] = {0.6f, 0.0f, 0.8f};
@@ -77,7 +77,7 @@ TEST(FileSamplers, EnvironmentAndLocalFilesDrawByTheirDensity) {
     }
 }
 
-TEST(FileSamplers, BrdfFilesDrawByTheirDensityInTheWorld) {
+TEST(FileSamplers, BrdfFilesSampleByTheirPdfInTheWorld) {
     const auto made = make_brdf(std::make_unique<LobeBrdf>(0.4, 0.4), budget(4096));
     const LightSamplerPtr sampler = file_sampler(made->file);
     std::mt19937_64 random(81);
@@ -86,7 +86,7 @@ TEST(FileSamplers, BrdfFilesDrawByTheirDensityInTheWorld) {
         check.tolerance = 0.01; // cells of half-vectors cross bins
         check.disagreeing = 2e-3;
         check.significance = 1e-4;
-        expect_samples_as_its_density(*sampler, point, {16, 8, 40}, "brdf", check);
+        expect_samples_as_its_pdf(*sampler, point, {16, 8, 40}, "brdf", check);
         const auto own = sampler->point_sampler();
         own->move_to(point);
         float wo[3], wi[3];
@@ -105,7 +105,7 @@ TEST(FileSamplers, BrdfFilesDrawByTheirDensityInTheWorld) {
     }
 }
 
-TEST(FileSamplers, TabulatedBrdfsDrawByTheirDensityInTheWorld) {
+TEST(FileSamplers, TabulatedBrdfsSampleByTheirPdfInTheWorld) {
     const LobeBrdf brdf(0.4, 0.4);
     const acdf::compress::Reflected reflected = [&](const double wo[3], const double wi[3]) {
         double rgb[3];
@@ -120,7 +120,7 @@ TEST(FileSamplers, TabulatedBrdfsDrawByTheirDensityInTheWorld) {
         check.tolerance = 0.02;
         check.disagreeing = 1e-3;
         check.significance = 1e-4;
-        expect_samples_as_its_density(*sampler, point, {16, 8, 40}, "table", check, drawn(*sampler, point));
+        expect_samples_as_its_pdf(*sampler, point, {16, 8, 40}, "table", check, sampled(*sampler, point));
     }
 }
 

@@ -70,11 +70,11 @@ struct SamplerCheck {
     double significance = sidak(0.01, 200);
 };
 
-/// What is drawn in vain has an outcome of its own: what the integral of the density lacks of 1.
-inline void expect_samples_as_its_density(const acdf::measure::LightSampler& sampler,
-                                          const acdf::measure::ShadingPoint& at, const SphereBins& bins,
-                                          const std::string& name, const SamplerCheck& check = {},
-                                          double integral = 1.0) {
+/// What is sampled in vain has an outcome of its own: what the integral of the density lacks of 1.
+inline void expect_samples_as_its_pdf(const acdf::measure::LightSampler& sampler,
+                                      const acdf::measure::ShadingPoint& at, const SphereBins& bins,
+                                      const std::string& name, const SamplerCheck& check = {},
+                                      double integral = 1.0) {
     const auto point = sampler.point_sampler();
     point->move_to(at);
     std::vector<double> probability(bins.count() + 1, 0.0);

@@ -1,6 +1,6 @@
-// Samplers of a probe's texels: that each draws by the density it tells, which is the one that it should have.
+// Samplers of a probe's texels: that each samples by the density it tells, which is the one that it should have.
+#include "tests/lib/measure/samplers/baselines.h"
 #include "tests/lib/measure/samplers/light_sampler_checks.h"
-#include "tests/lib/measure/samplers/rivals.h"
 
 #include "measure/samplers/downsampled_cdf.h"
 #include "measure/samplers/light_samplers.h"
@@ -36,16 +36,16 @@ protected:
     const Target& target() const { return GetParam().target; }
 };
 
-TEST_P(TexelSamplers, DrawByTheirDensity) {
+TEST_P(TexelSamplers, SampleByTheirPdf) {
     const Target& t = target();
     const std::vector<Normal> normals = awkward_normals();
     for (const NamedSampler& each : samplers_of(t))
         for (std::size_t i = 0; i < normals.size(); i += each.name == "tiling" ? 2 : 8) {
             const auto point = each.sampler->point_sampler();
             point->move_to(facing(normals[i]));
-            const bool drawn = point->sample(0.5, 0.5).pdf > 0.0f; // else tiles see no light
-            expect_samples_as_its_density(*each.sampler, facing(normals[i]), {t.columns, t.rows, 1, is_square(t)},
-                                          each.name, {}, drawn ? 1.0 : 0.0);
+            const bool sampled = point->sample(0.5, 0.5).pdf > 0.0f; // else tiles see no light
+            expect_samples_as_its_pdf(*each.sampler, facing(normals[i]), {t.columns, t.rows, 1, is_square(t)},
+                                      each.name, {}, sampled ? 1.0 : 0.0);
         }
 }
 
@@ -164,29 +164,29 @@ TEST(TexelSamplersOf, BlackAndFilteredProbesAreRefused) {
     EXPECT_THROW(alias_sampler(filtered), std::invalid_argument);
 }
 
-TEST(SurfaceSamplers, DrawByTheirDensity) {
+TEST(SurfaceSamplers, SampleByTheirPdf) {
     std::mt19937_64 random(17);
     for (const Normal& n : awkward_normals()) {
         SamplerCheck check;
         check.tolerance = 2e-3; // the hemisphere's border crosses bins
         check.disagreeing = 1e-3;
-        expect_samples_as_its_density(*cosine_sampler(), facing(n), {24, 12, 16}, "cosine", check);
+        expect_samples_as_its_pdf(*cosine_sampler(), facing(n), {24, 12, 16}, "cosine", check);
         Normal wo = random_direction(random);
         const double side = dot(n.data(), wo.data());
-        // Where half-vectors are visible but light would come from below nothing is drawn: no integral is known.
+        // Where half-vectors are visible but light would come from below nothing is sampled: no integral is known.
         if (side < 0.0)
             for (float& x : wo) x = -x;
         const ShadingPoint at = shading_point(n.data(), wo.data());
         const LightSamplerPtr ggx = ggx_sampler(0.5);
         const auto point = ggx->point_sampler();
         point->move_to(at);
-        int drawn = 0;
+        int sampled = 0;
         for (int i = 0; i < 20000; ++i) {
             const double u0 = uniform(random), u1 = uniform(random);
-            drawn += point->sample(u0, u1).pdf > 0.0f;
+            sampled += point->sample(u0, u1).pdf > 0.0f;
         }
         check.tolerance = 0.015; // of the share that was counted
-        expect_samples_as_its_density(*ggx, at, {24, 12, 16}, "ggx", check, drawn / 20000.0);
+        expect_samples_as_its_pdf(*ggx, at, {24, 12, 16}, "ggx", check, sampled / 20000.0);
 
         const float below[3] = {-wo[0], -wo[1], -wo[2]};
         point->move_to(shading_point(n.data(), below));

@@ -80,7 +80,7 @@ const std::vector<Surface>& surfaces() {
     return out;
 }
 
-TEST(Product, DrawsByItsDensity) {
+TEST(Product, SamplesByItsPdf) {
     const std::vector<Light>& all_lights = lights();
     const std::vector<Surface>& all_surfaces = surfaces();
     SamplerCheck check;
@@ -93,8 +93,8 @@ TEST(Product, DrawsByItsDensity) {
         for (const Surface& surface : all_surfaces) {
             const auto sampler = product_sampler(light.map->file, surface.made->file, i % 2 ? 64 : 24);
             const SphereBins bins{64, 32, surface.name == "narrow" ? 12u : 6u};
-            expect_samples_as_its_density(*sampler, at[static_cast<std::size_t>(i++)], bins,
-                                          light.name + ", " + surface.name, check);
+            expect_samples_as_its_pdf(*sampler, at[static_cast<std::size_t>(i++)], bins,
+                                      light.name + ", " + surface.name, check);
         }
 }
 
@@ -107,8 +107,8 @@ TEST(Product, WarpedNumbersDrawByTheirDensity) {
     const std::vector<ShadingPoint> at = points(12);
     for (std::size_t i = 0; i < all_lights.size(); ++i)
         if (!is_fast(all_lights[i])) // which tells no numbers of a direction
-            expect_samples_as_its_density(*product_warp_sampler(all_lights[i].map->file, brdf), at[2 * i],
-                                          SphereBins{64, 32, 12}, all_lights[i].name, check);
+            expect_samples_as_its_pdf(*product_warp_sampler(all_lights[i].map->file, brdf), at[2 * i],
+                                      SphereBins{64, 32, 12}, all_lights[i].name, check);
 }
 
 /// Reflected light of a point, by summation over the grid of the light.
@@ -218,7 +218,7 @@ TEST(Product, WeighingGroupsAndOpeningThemIsLessNoise) {
     EXPECT_LT(all[1], all[0]); // eight parts of smooth light are next to none
 }
 
-// A tile with much light that reaches above the horizon where its middle does not: it is drawn nonetheless.
+// A tile with much light that reaches above the horizon where its middle does not: it is sampled nonetheless.
 TEST(Product, LightAtTheHorizonIsDrawn) {
     const Light& light = lights()[4];
     const Surface& surface = surfaces()[0];

@@ -1,6 +1,6 @@
 // Tiling on the fly: that its bounds hold and are tight, its density is that of its samples, and its variance is
 // what samples show.
-#include "tests/lib/measure/samplers/rivals.h"
+#include "tests/lib/measure/samplers/baselines.h"
 
 #include "measure/samplers/tiling.h"
 
@@ -84,26 +84,26 @@ protected:
 
 TEST_P(Tiling, DensityIsThatOfSamples) {
     const Target& t = target();
-    const TilingOnTheFly rival = tiling();
+    const TilingOnTheFly baseline = tiling();
     std::mt19937_64 random(3);
     for (const Normal& n : awkward_normals()) {
-        const TilingOnTheFly::Point point = rival.at(n.data());
+        const TilingOnTheFly::Point point = baseline.at(n.data());
         if (!(point.cumulative.back() > 0.0)) {
-            EXPECT_EQ(rival.sample(point, 0.5, 0.5).pdf, 0.0f);
+            EXPECT_EQ(baseline.sample(point, 0.5, 0.5).pdf, 0.0f);
             continue;
         }
         std::vector<double> probability(t.values.size());
         double sum = 0.0;
         for_each_direction(t, 1, [&](std::size_t i, const double* d, double omega) {
             const float w[3] = {static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2])};
-            sum += probability[i] = rival.pdf(point, w) * omega;
+            sum += probability[i] = baseline.pdf(point, w) * omega;
         });
         EXPECT_NEAR(sum, 1.0, 1e-5);
         std::vector<std::uint32_t> observed(t.values.size(), 0);
         for (int i = 0; i < 20000; ++i) {
-            const AcdfDirectionSample s = rival.sample(point, uniform(random), uniform(random));
+            const AcdfDirectionSample s = baseline.sample(point, uniform(random), uniform(random));
             ASSERT_GT(s.pdf, 0.0f);
-            ASSERT_FLOAT_EQ(s.pdf, rival.pdf(point, s.direction));
+            ASSERT_FLOAT_EQ(s.pdf, baseline.pdf(point, s.direction));
             ++observed[texel_of(t, s.direction)];
         }
         const ChiSquare test = chi_square(observed, probability);
@@ -114,14 +114,14 @@ TEST_P(Tiling, DensityIsThatOfSamples) {
 
 TEST_P(Tiling, EveryLitDirectionAboveTheHorizonHasADensity) {
     const Target& t = target();
-    const TilingOnTheFly rival = tiling();
+    const TilingOnTheFly baseline = tiling();
     std::mt19937_64 random(4);
     for (const Normal& n : awkward_normals()) {
-        const TilingOnTheFly::Point point = rival.at(n.data());
+        const TilingOnTheFly::Point point = baseline.at(n.data());
         for (int i = 0; i < 3000; ++i) {
             const Normal w = random_direction(random);
             if (dot(n.data(), w.data()) > 0.0 && t.values[texel_of(t, w.data())] > 0.0f) {
-                ASSERT_GT(rival.pdf(point, w.data()), 0.0f);
+                ASSERT_GT(baseline.pdf(point, w.data()), 0.0f);
             }
         }
     }
@@ -131,21 +131,21 @@ class TilingVariance : public Tiling {};
 
 TEST_P(TilingVariance, VarianceIsThatOfSamples) {
     const Target& t = target();
-    const TilingOnTheFly rival = tiling();
+    const TilingOnTheFly baseline = tiling();
     const double flux = acdf::compress::integral(t);
     const double centres = 1e-3 * flux * flux; // the cosine's variance within such a texel
     std::mt19937_64 random(5);
     for (const Normal& n : awkward_normals()) {
-        const TilingOnTheFly::Point point = rival.at(n.data());
+        const TilingOnTheFly::Point point = baseline.at(n.data());
         if (!(point.cumulative.back() > 0.0)) continue;
         const MonteCarlo seen = monte_carlo(20000, [&] {
-            const AcdfDirectionSample s = rival.sample(point, uniform(random), uniform(random));
+            const AcdfDirectionSample s = baseline.sample(point, uniform(random), uniform(random));
             const double cosine = dot(n.data(), s.direction);
             return cosine > 0.0 ? t.values[texel_of(t, s.direction)] * cosine / s.pdf : 0.0;
         });
         const double mean = irradiance(t, n);
         EXPECT_NEAR(seen.mean, mean, 4.5 * seen.mean_error + 2e-3 * mean);
-        const double second = (1.0 + rival.relative_variance(n.data())) * mean * mean;
+        const double second = (1.0 + baseline.relative_variance(n.data())) * mean * mean;
         EXPECT_NEAR(seen.second, second, 4.5 * seen.second_error + centres);
     }
 }

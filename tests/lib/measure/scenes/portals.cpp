@@ -1,7 +1,7 @@
-// What rooms are lit by elsewhere: portals, and what can be seen of tiles at cache points. That each draws by the
+// What rooms are lit by elsewhere: portals, and what can be seen of tiles at cache points. That each samples by the
 // density it tells, and finds all the light that reaches a point.
+#include "tests/lib/measure/samplers/baselines.h"
 #include "tests/lib/measure/samplers/light_sampler_checks.h"
-#include "tests/lib/measure/samplers/rivals.h"
 
 #include "input/brdf/brdf.h"
 #include "measure/scenes/portals.h"
@@ -46,7 +46,7 @@ bool reaches(const std::vector<Portal>& all, const Vec3& from, const float w[3])
     return false;
 }
 
-const Vec3 kPlaces[] = {{-1, 0, 0.8}, {1.5, -1, 1}, {0.3, 2.5, -2}, {1.9, 0.5, 1.2}};
+const Vec3 kPositions[] = {{-1, 0, 0.8}, {1.5, -1, 1}, {0.3, 2.5, -2}, {1.9, 0.5, 1.2}};
 
 // Borders of what is seen cut bins of directions: they are summed finely.
 constexpr SphereBins kBins{16, 8, 96};
@@ -56,9 +56,9 @@ TEST(Portals, AreDrawnFromByTheirDensity) {
     const Target target = probe();
     const LightSamplerPtr uniform = uniform_portal_sampler(portals(), false),
                           windowed = windowed_portal_sampler(target, portals(), false, 96);
-    for (const Vec3& place : kPlaces) {
-        expect_samples_as_its_density(*uniform, point_at(place), kBins, "uniform", kCheck);
-        expect_samples_as_its_density(*windowed, point_at(place), kBins, "windowed", kCheck);
+    for (const Vec3& position : kPositions) {
+        expect_samples_as_its_pdf(*uniform, point_at(position), kBins, "uniform", kCheck);
+        expect_samples_as_its_pdf(*windowed, point_at(position), kBins, "windowed", kCheck);
     }
 }
 
@@ -68,12 +68,12 @@ TEST(Portals, FindAllLightThatComesThroughThem) {
     for (const bool is_uniform : {true, false}) {
         const LightSamplerPtr sampler =
             is_uniform ? uniform_portal_sampler(all, false) : windowed_portal_sampler(target, all, false, 128);
-        for (const Vec3& place : kPlaces) {
+        for (const Vec3& position : kPositions) {
             const auto point = sampler->point_sampler();
-            point->move_to(point_at(place));
+            point->move_to(point_at(position));
             double expected = 0.0, square = 0.0;
             kBins.for_each([&](std::size_t, const float* w, double omega) {
-                if (!reaches(all, place, w)) return;
+                if (!reaches(all, position, w)) return;
                 const double f = target.values[texel_of(target, w)], p = point->pdf(w);
                 expected += f * omega;
                 square += p > 0.0 ? f * f / p * omega : 0.0;
@@ -87,12 +87,12 @@ TEST(Portals, FindAllLightThatComesThroughThem) {
             EXPECT_NEAR(mean.mean, expected, 4.0 * mean.mean_error + 5e-3 * expected) << is_uniform;
             const double relative = square / (expected * expected) - 1.0;
             if (is_uniform) EXPECT_GT(relative, 0.05); // it knows no light
-            else EXPECT_LT(relative, 0.2);             // where two portals overlap it draws twice as much
+            else EXPECT_LT(relative, 0.2);             // where two portals overlap it samples twice as much
         }
     }
 }
 
-// Outside, and in the plane of a portal, there is nothing to draw; meshes with y up have their own coordinates.
+// Outside, and in the plane of a portal, there is nothing to sample; meshes with y up have their own coordinates.
 TEST(Portals, OfEveryPlace) {
     const Target target = probe();
     const std::vector<Portal> one{{{2, -1, 0}, {0, 2, 0}, {0, 0, 2}}};
@@ -164,13 +164,13 @@ TEST(Visibility, IsKnownAtCachePoints) {
     double seen = 0.0, hidden = 0.0;
     for (std::size_t i = 0; i < yard.points.size(); i += 40) {
         const ScenePoint& point = yard.points[i];
-        expect_samples_as_its_density(*with, point.shading(), SphereBins{64, 32, 4}, "visibility",
-                                      SamplerCheck{4000, 1e-4, 0.0, 1e-4});
+        expect_samples_as_its_pdf(*with, point.shading(), SphereBins{64, 32, 4}, "visibility",
+                                  SamplerCheck{4000, 1e-4, 0.0, 1e-4});
         a->move_to(point.shading());
         b->move_to(point.shading());
         SphereBins{32, 16}.for_each([&](std::size_t, const float* w, double omega) {
             const double p = a->pdf(w);
-            EXPECT_EQ(p > 0.0, b->pdf(w) > 0.0f); // what may be hidden is still drawn
+            EXPECT_EQ(p > 0.0, b->pdf(w) > 0.0f); // what may be hidden is still sampled
             (point.hidden({w[0], w[1], w[2]}) ? hidden : seen) += (p - b->pdf(w)) * omega;
         });
     }

@@ -19,15 +19,15 @@ struct Case {
 
 std::vector<Case> container_cases();
 std::vector<Case> plane_cases();
-std::vector<Case> company_cases();
+std::vector<Case> partner_cases();
 std::vector<Case> description_cases();
 std::vector<Case> tree_cases();
 std::vector<Case> table_cases();
-std::vector<Case> brdf_cases();     ///< of kind 3
-std::vector<Case> place_cases();    ///< of kind 2 with places
-std::vector<Case> portal_cases();   ///< and with portals
-std::vector<Case> fast_cases();     ///< of the fast shape of kind 2
-std::vector<Case> local_cases();    ///< of kind 2 and of what bins share
-std::vector<Case> halvings_cases(); ///< of kind 1 with HALV
+std::vector<Case> brdf_cases();       ///< of kind 3
+std::vector<Case> visibility_cases(); ///< of kind 2 with visibility cells
+std::vector<Case> portal_cases();     ///< and with portals
+std::vector<Case> fast_cases();       ///< of the fast shape of kind 2
+std::vector<Case> local_cases();      ///< of kind 2 and of what bins share
+std::vector<Case> halvings_cases();   ///< of kind 1 with HALV
 
 } // namespace acdf_test

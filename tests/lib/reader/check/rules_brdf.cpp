@@ -39,7 +39,7 @@ std::vector<Case> brdf_cases() {
              file.chunks[0].raw = d.encode();
              return file.encode();
          }},
-        {3013, "company_of_a_brdf",
+        {3013, "partner_of_a_brdf",
          [] {
              FileSpec file = shared_brdf().file();
              file.chunks.push_back({"COMP", Bytes(24, 0), 1, false});

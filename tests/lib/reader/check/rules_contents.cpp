@@ -7,7 +7,7 @@ namespace acdf_test {
 namespace {
 
 // COMP of one record a bin, if any, with one number changed.
-Bytes company_chunk(std::uint32_t kind, std::uint32_t records, float flux) {
+Bytes partner_chunk(std::uint32_t kind, std::uint32_t records, float flux) {
     Bytes raw;
     put32(raw, kind);
     put32(raw, ACDF_HEURISTIC_BALANCE);
@@ -21,15 +21,15 @@ Bytes company_chunk(std::uint32_t kind, std::uint32_t records, float flux) {
     }
     return raw;
 }
-Action<Bytes()> company(FileSpec file, Bytes raw, const Action<void(Bytes&)>& change = {}) {
+Action<Bytes()> partner(FileSpec file, Bytes raw, const Action<void(Bytes&)>& change = {}) {
     return [=]() mutable {
         if (change) change(raw);
         file.chunks.push_back({"COMP", raw, 1, false});
         return file.encode();
     };
 }
-Action<Bytes()> company_field(std::size_t at, int size, std::uint64_t value) {
-    return company(complete_file(), company_chunk(ACDF_COMPANY_COSINE, 1, 0.0f),
+Action<Bytes()> partner_field(std::size_t at, int size, std::uint64_t value) {
+    return partner(complete_file(), partner_chunk(ACDF_PARTNER_COSINE, 1, 0.0f),
                    [=](Bytes& raw) { set(raw, at, size, value); });
 }
 FileSpec local_file() { return shared_local().file(); }
@@ -41,33 +41,33 @@ std::uint32_t bins_of(const FileSpec& file) {
 
 } // namespace
 
-std::vector<Case> company_cases() {
+std::vector<Case> partner_cases() {
     const FileSpec local = local_file(), table = table_file();
     const std::uint32_t bins = bins_of(local);
-    const Bytes cosine = company_chunk(ACDF_COMPANY_COSINE, 1, 0.0f);
+    const Bytes cosine = partner_chunk(ACDF_PARTNER_COSINE, 1, 0.0f);
     return {
-        {5020, "empty", company(complete_file(), {})},
-        {5020, "cut", company(complete_file(), cosine, [](Bytes& raw) { raw.pop_back(); })},
-        {5020, "too_long", company(complete_file(), cosine, [](Bytes& raw) { raw.push_back(0); })},
-        {5020, "enormous", company_field(16, 4, 0xFFFFFFFF)},
-        {5020, "reserved", company_field(20, 4, 1)},
-        {5020, "all_ours", company_field(8, 4, 0x3F800000)},
-        {5020, "none_ours", company_field(8, 4, 0)},
-        {5020, "nan_share", company_field(8, 4, 0x7FC00000)},
-        {5020, "recommends_none", company_field(12, 4, 0)},
-        {5020, "recommends_nan", company_field(12, 4, 0x7FC00000)},
-        {5020, "record_above_one", company_field(24, 4, 0x3F800001)},
-        {5020, "flux_of_an_environment", company_field(28, 4, 0x3F800000)},
-        {5020, "two_records", company(complete_file(), company_chunk(ACDF_COMPANY_COSINE, 2, 0.0f))},
-        {5020, "local_without_records", company(local, company_chunk(ACDF_COMPANY_COSINE, 0, 0.0f))},
+        {5020, "empty", partner(complete_file(), {})},
+        {5020, "cut", partner(complete_file(), cosine, [](Bytes& raw) { raw.pop_back(); })},
+        {5020, "too_long", partner(complete_file(), cosine, [](Bytes& raw) { raw.push_back(0); })},
+        {5020, "enormous", partner_field(16, 4, 0xFFFFFFFF)},
+        {5020, "reserved", partner_field(20, 4, 1)},
+        {5020, "all_ours", partner_field(8, 4, 0x3F800000)},
+        {5020, "none_ours", partner_field(8, 4, 0)},
+        {5020, "nan_share", partner_field(8, 4, 0x7FC00000)},
+        {5020, "recommends_none", partner_field(12, 4, 0)},
+        {5020, "recommends_nan", partner_field(12, 4, 0x7FC00000)},
+        {5020, "record_above_one", partner_field(24, 4, 0x3F800001)},
+        {5020, "flux_of_an_environment", partner_field(28, 4, 0x3F800000)},
+        {5020, "two_records", partner(complete_file(), partner_chunk(ACDF_PARTNER_COSINE, 2, 0.0f))},
+        {5020, "local_without_records", partner(local, partner_chunk(ACDF_PARTNER_COSINE, 0, 0.0f))},
         {5020, "infinite_flux",
-         company(local, company_chunk(ACDF_COMPANY_COSINE, bins, std::numeric_limits<float>::infinity()))},
-        {5020, "negative_flux", company(local, company_chunk(ACDF_COMPANY_COSINE, bins, -1.0f))},
-        {5021, "none", company_field(0, 4, 0)},
-        {5021, "five", company_field(0, 4, 5)},
-        {5021, "table_beside_an_environment", company_field(0, 4, 4)},
-        {5021, "cosine_beside_a_table", company(table, company_chunk(ACDF_COMPANY_COSINE, 0, 0.0f))},
-        {5021, "heuristic", company_field(4, 4, 2)},
+         partner(local, partner_chunk(ACDF_PARTNER_COSINE, bins, std::numeric_limits<float>::infinity()))},
+        {5020, "negative_flux", partner(local, partner_chunk(ACDF_PARTNER_COSINE, bins, -1.0f))},
+        {5021, "none", partner_field(0, 4, 0)},
+        {5021, "five", partner_field(0, 4, 5)},
+        {5021, "table_beside_an_environment", partner_field(0, 4, 4)},
+        {5021, "cosine_beside_a_table", partner(table, partner_chunk(ACDF_PARTNER_COSINE, 0, 0.0f))},
+        {5021, "heuristic", partner_field(4, 4, 2)},
     };
 }
 

@@ -65,8 +65,8 @@ std::vector<Case> fast_cases() {
         {6027, "beside_rows", chunks([](std::vector<ChunkSpec>& list) {
              list.push_back({"ROWS", Bytes(4, 100), 1, false});
          })},
-        {6027, "beside_places", chunks([](std::vector<ChunkSpec>& list) {
-             list.push_back({"PLAC", placed_local().places->encode(), 0, false});
+        {6027, "beside_visibility", chunks([](std::vector<ChunkSpec>& list) {
+             list.push_back({"PLAC", visibility_local().visibility->encode(), 0, false});
          })},
         {6027, "beside_portals", chunks([](std::vector<ChunkSpec>& list) {
              list.push_back({"PORT", windowed_local().portals->encode(), 0, false});
@@ -159,7 +159,7 @@ TEST(FastRules, whatIsAtTheirLimitsIsRight) {
     }());
 }
 
-// Every truncation, and every byte of the two chunks changed, with CRCs that fit: refused, or drawn from safely.
+// Every truncation, and every byte of the two chunks changed, with CRCs that fit: refused, or sampled from safely.
 TEST(FastRules, changedBytesAreRefusedOrSafe) {
     for (const char* type : {"SUMS", "GRID", "TILE"}) {
         const FileSpec good = fast_lit_local().file();

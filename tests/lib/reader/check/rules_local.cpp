@@ -27,8 +27,8 @@ Make with(LocalSpec (*make)(), Change change) {
 }
 Make shared(Change change) { return with(shared_local, std::move(change)); }
 Make lit(Change change) { return with(lit_local, std::move(change)); }
-Make light(Action<void(LightSpec&)> change) {
-    return lit([=](LocalSpec& spec) { change(spec.lights[0]); });
+Make light(Action<void(BrightTileSpec&)> change) {
+    return lit([=](LocalSpec& spec) { change(spec.bright_tiles[0]); });
 }
 
 // Changes the payload of a chunk.
@@ -250,28 +250,28 @@ std::vector<Case> kind_cases() {
         {7005, "all_cosine", shared([](LocalSpec& spec) { spec.cosine_share = 1.0f; })},
         {7005, "negative_cosine", with(separate_local, [](LocalSpec& spec) { spec.cosine_share = -0.25f; })},
         {7005, "nan_cosine", shared([](LocalSpec& spec) { spec.cosine_share = not_a_number; })},
-        {7006, "no_such_tile", light([](LightSpec& l) { l.tile = 3; })},
-        {7006, "without_tiles", with(separate_local, [](LocalSpec& spec) { spec.lights.resize(1); })},
-        {7006, "twice", lit([](LocalSpec& spec) { spec.lights.push_back(spec.lights[0]); })},
+        {7006, "no_such_tile", light([](BrightTileSpec& l) { l.tile = 3; })},
+        {7006, "without_tiles", with(separate_local, [](LocalSpec& spec) { spec.bright_tiles.resize(1); })},
+        {7006, "twice", lit([](LocalSpec& spec) { spec.bright_tiles.push_back(spec.bright_tiles[0]); })},
         {7006, "falling", lit([](LocalSpec& spec) {
-             spec.lights.push_back(spec.lights[0]);
-             spec.lights[1].tile = 0;
-             spec.lights[1].low = {0, 0};
-             spec.lights[1].high = {3, 8};
+             spec.bright_tiles.push_back(spec.bright_tiles[0]);
+             spec.bright_tiles[1].tile = 0;
+             spec.bright_tiles[1].low = {0, 0};
+             spec.bright_tiles[1].high = {3, 8};
          })},
-        {7006, "other_box", light([](LightSpec& l) {
+        {7006, "other_box", light([](BrightTileSpec& l) {
              l.high = {8, 3};
          })},
-        {7006, "other_corner", light([](LightSpec& l) {
+        {7006, "other_corner", light([](BrightTileSpec& l) {
              l.low = {4, 0};
          })},
-        {7006, "long", light([](LightSpec& l) { l.direction[0] = 0.7f; })},
-        {7006, "nowhere", light([](LightSpec& l) { l.direction[1] = not_a_number; })},
-        {7006, "no_radius", light([](LightSpec& l) { l.radius = 0.0f; })},
-        {7006, "wide", light([](LightSpec& l) { l.radius = 2.5f; })},
-        {7006, "nan_radius", light([](LightSpec& l) { l.radius = not_a_number; })},
-        {7006, "dark", light([](LightSpec& l) { l.share = 0.0f; })},
-        {7006, "infinite", light([](LightSpec& l) { l.share = HUGE_VALF; })},
+        {7006, "long", light([](BrightTileSpec& l) { l.direction[0] = 0.7f; })},
+        {7006, "nowhere", light([](BrightTileSpec& l) { l.direction[1] = not_a_number; })},
+        {7006, "no_radius", light([](BrightTileSpec& l) { l.radius = 0.0f; })},
+        {7006, "wide", light([](BrightTileSpec& l) { l.radius = 2.5f; })},
+        {7006, "nan_radius", light([](BrightTileSpec& l) { l.radius = not_a_number; })},
+        {7006, "dark", light([](BrightTileSpec& l) { l.share = 0.0f; })},
+        {7006, "infinite", light([](BrightTileSpec& l) { l.share = HUGE_VALF; })},
         {7007, "last_split", lit([](LocalSpec& spec) {
              spec.codes[0] = {100, 1};
          })},
@@ -304,15 +304,15 @@ TEST(LocalRules, whatIsAtTheirLimitsIsRight) {
         spec.codes.push_back({1, 1});
         spec.bins[0] = {2, 0.0f};
     })());
-    expect_valid(light([](LightSpec& l) { l.radius = 2.0f; })());
+    expect_valid(light([](BrightTileSpec& l) { l.radius = 2.0f; })());
     LocalSpec one = separate_local();
     one.tiles = 1;
     one.codebook = even_codebook();
     one.codes.resize(1);
     one.bins.assign(6, {0, 1.0f});
     expect_valid(one.encode());
-    one.lights.resize(1); // the only tile: what is left for the mixture is nothing
-    one.lights[0].high = {8, 8};
+    one.bright_tiles.resize(1); // the only tile: what is left for the mixture is nothing
+    one.bright_tiles[0].high = {8, 8};
     for (BinSpec& bin : one.bins) bin.share = 0.0f;
     expect_valid(one.encode());
 }
@@ -335,7 +335,7 @@ TEST(LocalRules, faultsDoNotHideEachOther) {
     spec.bins[1].share = -1.0f;
     spec.bins[5].root = 7;
     spec.cosine_share = 2.0f;
-    spec.lights[0].radius = 0.0f;
+    spec.bright_tiles[0].radius = 0.0f;
     const Findings found = findings(spec.encode());
     EXPECT_EQ(found.rules, (std::multiset<int>{6017, 6021, 6026, 7005, 7006})) << found.text;
 }

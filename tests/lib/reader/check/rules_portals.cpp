@@ -54,10 +54,10 @@ std::vector<Case> portal_cases() {
              file.chunks.push_back({"PORT", windowed_local().portals->encode(), 0, false});
              return file.encode();
          }},
-        {7016, "without_places",
+        {7016, "without_visibility",
          [] {
              LocalSpec spec = windowed_local();
-             spec.places.reset();
+             spec.visibility.reset();
              return spec.encode();
          }},
         {7016, "empty", portal_payload([](Bytes& raw) { raw.clear(); })},

@@ -1,4 +1,4 @@
-// Runtime tables of BRDFs beside the walk that they stand for: the same draws and densities to the bit, on files
+// Runtime tables of BRDFs beside the walk that they stand for: the same samples and densities to the bit, on files
 // made by hand, of many cells and of the frozen ones.
 #include "tests/lib/reader/brdf_forms.h"
 #include "tests/lib/reader/tables/tables_pair.h"
@@ -101,7 +101,7 @@ TEST(RuntimeTablesOfBrdfs, AreNoneWhereManyViewsShareFewRows) {
 }
 
 #ifdef ACDF_BRDF_GUESSES
-/// Most guesses are right, or draws would be walked.
+/// Most guesses are right, or samples would be walked.
 TEST(RuntimeTablesOfBrdfs, GuessMostCells) {
     BrdfSpec spec = shared_brdf(); // eight by eight cells, half-way between views those of one
     spec.columns = spec.rows = 1024, spec.splits.clear(), spec.codes.assign(3, {});
@@ -129,7 +129,8 @@ TEST(RuntimeTablesOfBrdfs, GuessMostCells) {
     EXPECT_GT(right, 600);
 }
 
-/// Where a guess is wrong, draws go on beyond a side of its cell: there lies what the middle of that side touches.
+/// Where a guess is wrong, samples go on beyond a side of its cell: there lies what the middle of that side
+/// touches.
 TEST(RuntimeTablesOfBrdfs, NameCellsBeyondSides) {
     const BrdfPair pair(many_borders().encode());
     const AcdfBrdf brdf = pair.fast.brdf().data();

@@ -1,5 +1,5 @@
 // Runtime tables of local environments beside the walk that they stand for: the same density to the bit for every
-// direction and normal, and the same draws but for rounding, on golden files, random ones, those that break their
+// direction and normal, and the same samples but for rounding, on golden files, random ones, those that break their
 // luck, and a fitted one.
 #include "tests/inputs/local_maps.h"
 #include "tests/lib/reader/golden_files.h"
@@ -44,32 +44,32 @@ void expect_same(const LocalPair& pair, const AcdfLocalPoint points[2], const fl
     served.told += pair.tables() && pair.tables()->pieces && acdf_local_find_piece(pair.tables(), direction);
 }
 
-/// Whether two draws are of one cell and at one place but for the rounding of floats. (Where a share is drawn
+/// Whether two samples are of one cell and at one place but for the rounding of floats. (Where a share is sampled
 /// around the normal the density depends on the place.)
-bool same_draw(const acdf::DirectionSample& a, const acdf::DirectionSample& b, double most) {
+bool same_sample(const acdf::DirectionSample& a, const acdf::DirectionSample& b, double most) {
     for (int i = 0; i < 3; ++i)
         if (!(std::fabs(double{a.direction[i]} - b.direction[i]) <= most)) return false;
     return std::fabs(double{a.pdf} - b.pdf) <= 1e-5 * b.pdf;
 }
 
-/// A draw is the walk's but next to borders, where it is that of numbers 2^-24 away. Its density is what the same
+/// A sample is the walk's but next to borders, where it is that of numbers 2^-24 away. Its density is what the same
 /// view tells of it, where that holds of the walk: cells without tilts.
-void expect_same_draw(const LocalPair& pair, const AcdfLocalPoint points[2], const double u[2]) {
+void expect_same_sample(const LocalPair& pair, const AcdfLocalPoint points[2], const double u[2]) {
     const acdf::DirectionSample a = pair.fast.local().sample(points[0], u[0], u[1]);
     const acdf::DirectionSample b = pair.plain.local().sample(points[1], u[0], u[1]);
     if (a.pdf > 0.0f && same_bits(b.pdf, pair.plain.local().pdf(points[1], b.direction))) {
         ASSERT_TRUE(same_bits(a.pdf, pair.fast.local().pdf(points[0], a.direction))) << u[0] << ' ' << u[1];
     }
-    if (same_draw(a, b, 4e-7)) return;
+    if (same_sample(a, b, 4e-7)) return;
     bool near = false;
     for (int k = 0; k < 9 && !near; ++k)
-        near = same_draw(
+        near = same_sample(
             a, pair.plain.local().sample(points[1], u[0] + 0x1p-24 * (k % 3 - 1), u[1] + 0x1p-24 * (k / 3 - 1)),
             1e-4);
     ASSERT_TRUE(near) << u[0] << ' ' << u[1] << ' ' << a.pdf;
 }
 
-/// Draws of a normal and their densities, directions anywhere, and such beside borders between squares.
+/// Samples of a normal and their densities, directions anywhere, and such beside borders between squares.
 void expect_same(const LocalPair& pair, const float normal[3], std::mt19937_64& random, LocalServed& served,
                  LocalServed& edges) {
     const AcdfLocalPoint points[2] = {pair.fast.local().at(normal), pair.plain.local().at(normal)};
@@ -77,7 +77,7 @@ void expect_same(const LocalPair& pair, const float normal[3], std::mt19937_64& 
     for (int i = 0; i < 8 && !testing::Test::HasFatalFailure(); ++i) {
         const double u0 = uniform(random), u1 = uniform(random);
         const double u[2] = {i == 0 ? 0.0 : u0, i == 1 ? 1.0 : u1};
-        expect_same_draw(pair, points, u);
+        expect_same_sample(pair, points, u);
         const acdf::DirectionSample a = pair.fast.local().sample(points[0], u0, u1);
         if (a.pdf > 0.0f) expect_same(pair, points, a.direction, served);
         const Normal any = random_direction(random);
@@ -124,7 +124,7 @@ TEST(LocalRuntimeTables, AgreeOnGoldenFiles) {
     EXPECT_GE(with_tables, 1);
 }
 
-// Shared curves, dark segments, tiles that are cells, lights, tilts, both parameterizations.
+// Shared curves, dark segments, tiles that are cells, bright tiles, tilts, both parameterizations.
 TEST(LocalRuntimeTables, AgreeOnRandomFiles) {
     int with_tables = 0;
     for (std::uint32_t seed = 0; seed < 120; ++seed) {
@@ -148,14 +148,14 @@ TEST(LocalRuntimeTables, AgreeOnHandMadeLights) {
     expect_agreement(pair, 500);
 }
 
-/// What SPEC.md leaves open of the sum of the weights of lights.
+/// What SPEC.md leaves open of the sum of the weights of bright tiles.
 void expect_same_lights(const AcdfLocalPoint& a, const AcdfLocalPoint& b) {
-    ASSERT_EQ(a.lights > 0.0, b.lights > 0.0);
-    ASSERT_NEAR(a.lights, b.lights, 0x1p-39 * b.lights);
+    ASSERT_EQ(a.bright_tiles > 0.0, b.bright_tiles > 0.0);
+    ASSERT_NEAR(a.bright_tiles, b.bright_tiles, 0x1p-39 * b.bright_tiles);
     ASSERT_NEAR(a.sum, b.sum, 0x1p-39 * b.sum);
 }
 
-// Points are what the walk makes of a normal: to the bit, but for the sum of lights.
+// Points are what the walk makes of a normal: to the bit, but for the sum of bright tiles.
 TEST(LocalRuntimeTables, MakeTheSamePoints) {
     LocalPair pair(lit_local().encode());
     std::mt19937_64 random(8);
@@ -178,7 +178,7 @@ TEST(LocalRuntimeTables, MakeTheSamePoints) {
 }
 
 /// A normal at whose horizon a light stands, or nearly so: above it, cut by it, below.
-Normal horizon_of(const AcdfLight& light, std::mt19937_64& random) {
+Normal horizon_of(const AcdfBrightTile& light, std::mt19937_64& random) {
     const float* const d = light.direction;
     const Normal any = random_direction(random);
     const float height = light.radius * (static_cast<float>(random() % 9) - 4.0f) * 0.25f;
@@ -186,19 +186,20 @@ Normal horizon_of(const AcdfLight& light, std::mt19937_64& random) {
     return {any[0] - along * d[0], any[1] - along * d[1], any[2] - along * d[2]};
 }
 
-// Tables weigh lights two at a time, and most of a facet together: any number of them, and those that the horizon
-// cuts.
+// Tables weigh bright tiles two at a time, and most of a facet together: any number of them, and those that the
+// horizon cuts.
 TEST(LocalRuntimeTables, WeighLightsAsTheFileDoes) {
     std::size_t odd = 0, even = 0, cut_by_horizon = 0, of_facets = 0;
     for (std::uint32_t seed = 0; seed < 60; ++seed) {
         const LocalPair pair(RandomLocal(seed, varied_local_options(seed)).make().encode());
         const AcdfLocal fast = pair.fast.local().data(), plain = pair.plain.local().data();
-        if (!fast.tables || fast.light_count < 2) continue;
-        ++(fast.light_count % 2 > 0 ? odd : even);
+        if (!fast.tables || fast.bright_tile_count < 2) continue;
+        ++(fast.bright_tile_count % 2 > 0 ? odd : even);
         std::mt19937_64 random(seed);
         for (int i = 0; i < 100; ++i) {
-            const Normal normal = i % 2 == 0 ? random_direction(random)
-                                             : horizon_of(plain.lights[random() % plain.light_count], random);
+            const Normal normal = i % 2 == 0
+                                      ? random_direction(random)
+                                      : horizon_of(plain.bright_tiles[random() % plain.bright_tile_count], random);
             const AcdfLocalPoint a = pair.fast.local().at(normal.data()), b = pair.plain.local().at(normal.data());
             expect_same_lights(a, b);
             of_facets += a.facet != nullptr && a.facet->whole[0] != 0.0;
@@ -206,13 +207,13 @@ TEST(LocalRuntimeTables, WeighLightsAsTheFileDoes) {
             AcdfCut cuts[2];
             acdf_cut_begin(&fast, &a, &cuts[0]);
             acdf_cut_begin(&plain, &b, &cuts[1]);
-            for (std::uint32_t k = 0; k < fast.light_count; ++k) {
-                const AcdfLight& light = plain.lights[k];
+            for (std::uint32_t k = 0; k < fast.bright_tile_count; ++k) {
+                const AcdfBrightTile& light = plain.bright_tiles[k];
                 const double height = a.normal[0] * light.direction[0] + a.normal[1] * light.direction[1] +
                                       a.normal[2] * light.direction[2];
                 cut_by_horizon += std::fabs(height) < light.radius * a.length;
-                ASSERT_EQ(cuts[0].light[k], acdf_light_weight(&light, &b));
-                ASSERT_EQ(cuts[1].light[k], acdf_light_weight(&light, &b));
+                ASSERT_EQ(cuts[0].light[k], acdf_bright_tile_weight(&light, &b));
+                ASSERT_EQ(cuts[1].light[k], acdf_bright_tile_weight(&light, &b));
             }
         }
     }

@@ -24,7 +24,7 @@ namespace {
 using namespace acdf;
 using namespace acdf::test;
 
-/// Draws and densities of a file with runtime tables and without are the same to the bit: at drawn points,
+/// Samples and pdfs of a file with runtime tables and without are the same to the bit: at sampled points,
 /// anywhere, and next to the borders between steps.
 class AsWalked {
 public:
@@ -70,8 +70,8 @@ private:
         std::uint32_t step[ACDF_MAX_AXES];
         if (!grids || !acdf_table_step(&table, x, position, step)) return;
         ++asked_;
-        told_ += acdf_entry_of_place(table.entries, grids, table.axis_count - table.indexed_count,
-                                     step + table.indexed_count) >= ACDF_ENTRY_CELL;
+        told_ += acdf_entry_of_position(table.entries, grids, table.axis_count - table.indexed_count,
+                                        step + table.indexed_count) >= ACDF_ENTRY_CELL;
     }
 
     std::vector<std::uint8_t> bytes_;
@@ -224,25 +224,25 @@ std::size_t expect_entries_lead_deep(const AcdfTable& table, std::uint32_t bin) 
     const auto* const words = reinterpret_cast<const std::uint32_t*>(table.entries);
     EntryBox<std::uint32_t> all_places = {};
     EntryBox<double> all_numbers = {};
-    std::uint32_t places[ACDF_MAX_AXES] = {}, place_count = 1, number_count = 1;
+    std::uint32_t positions[ACDF_MAX_AXES] = {}, position_count = 1, number_count = 1;
     for (std::uint32_t axis = first; axis < end; ++axis) {
         const AcdfEntryAxis& a = grids->axes[axis - first];
         all_places.high[axis] = table.axes[axis].resolution;
         all_numbers.high[axis] = 1.0;
-        places[axis] = ((table.axes[axis].resolution - 1) >> a.shift) + 1;
-        place_count *= places[axis];
+        positions[axis] = ((table.axes[axis].resolution - 1) >> a.shift) + 1;
+        position_count *= positions[axis];
         number_count *= a.number_steps;
     }
     std::size_t cells = 0;
-    for (std::uint32_t k = 0; k < place_count; ++k) {
+    for (std::uint32_t k = 0; k < position_count; ++k) {
         EntryBox<std::uint32_t> entry = all_places;
         for (std::uint32_t axis = first; axis < end; ++axis) {
             const AcdfEntryAxis& a = grids->axes[axis - first];
-            entry.low[axis] = k / a.place_stride % places[axis] << a.shift;
+            entry.low[axis] = k / a.position_stride % positions[axis] << a.shift;
             entry.high[axis] = std::min(entry.low[axis] + (1u << a.shift), table.axes[axis].resolution);
         }
         const LedTo to = led_to<std::uint32_t>(table, root, all_places, entry, 0);
-        const std::uint32_t found = words[grids->places + k];
+        const std::uint32_t found = words[grids->positions + k];
         EXPECT_EQ(found >= ACDF_ENTRY_CELL, to.cell);
         if (!to.cell) {
             EXPECT_EQ(acdf_entry_curve(table.entries, found & ~ACDF_ENTRY_CELL)->at, to.at);
@@ -270,7 +270,7 @@ TEST(TableEntries, LeadAsDeepAsTheyCan) {
         ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
         const AcdfTable table = file.table().data();
         for (std::uint32_t bin = 0; table.entries && bin < bins; ++bin) {
-            if (acdf_entry_bin(table.entries, bin)->places == 0) continue;
+            if (acdf_entry_bin(table.entries, bin)->positions == 0) continue;
             ++with_tables;
             cells += expect_entries_lead_deep(table, bin);
         }

@@ -1,0 +1,243 @@
+#include "compress/visibility/fit.h"
+
+#include "compress/fit/shared.h"
+#include "compress/parallel.h"
+#include "compress/visibility/portal_rows.h"
+#include "compress/visibility/rows.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+namespace acdf::compress {
+namespace {
+
+/// Splits of tiles that cells tell apart: more of them and there are fewer cells (docs/visibility.md).
+constexpr std::uint32_t kColumns = 127;
+/// The same beside portals, through which most samples are taken: cells that know these are worth more.
+constexpr std::uint32_t kColumnsBesidePortals = 31;
+/// Cells that have the same columns, in the mean.
+constexpr std::uint64_t kCellsOfRegion = 200;
+/// How far cells are mixed, of the smaller one at their border.
+constexpr double kBlend = 0.4;
+/// Points of a cell, in the mean: those that tell where it is divided and those that tell its row; rounds in which
+/// the first are found; and candidates for each.
+constexpr std::size_t kPointsOfDivision = 40, kPointsOfRow = 80;
+constexpr std::uint32_t kRounds = 3;
+constexpr std::uint64_t kCandidates = 24;
+/// Of the time, for progress: what it takes to find cells, before rows.
+constexpr double kDivisionShare = 0.4;
+/// Around the points: light is gathered next to them, too.
+constexpr float kMargin = 1e-3f;
+
+/// The box of the first points that a source tells of, which are as even as any; a little larger, as light is
+/// gathered next to them, too. It has a volume, wherever it lies.
+AcdfVisibility header_of(const PointSource& source, const VisibilityFrame& frame) {
+    AcdfVisibility out = {};
+    for (int k = 0; k < 3; ++k) std::copy_n(frame.transform[k], 4, out.transform[k]);
+    constexpr std::size_t batch = 1 << 16;
+    std::vector<VisibilityPoint> points(batch);
+    std::vector<char> there(batch, 0);
+    parallel_for(std::size_t{0}, batch,
+                 [&](std::size_t i) { there[i] = source(i, points[i]) && is_near(points[i].position); });
+    if (std::find(there.begin(), there.end(), 1) == there.end())
+        throw std::invalid_argument("a scene without points within 1e30 of its origin");
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    float size = 0.0f;
+    for (std::size_t k = 0; k < 3; ++k) {
+        out.low[k] = kInfinity;
+        out.high[k] = -out.low[k];
+        for (std::size_t i = 0; i < batch; ++i) {
+            if (!there[i]) continue;
+            out.low[k] = std::min(out.low[k], points[i].position[k]);
+            out.high[k] = std::max(out.high[k], points[i].position[k]);
+        }
+        size = std::max(size, out.high[k] - out.low[k]);
+    }
+    if (!(size > 0.0f)) size = 1.0f;
+    for (std::size_t k = 0; k < 3; ++k) { // far from the origin the margin may be less than floats tell apart
+        out.low[k] = std::min(out.low[k] - kMargin * size, std::nextafter(out.low[k], -kInfinity));
+        out.high[k] = std::max(out.high[k] + kMargin * size, std::nextafter(out.high[k], kInfinity));
+    }
+    return out;
+}
+
+/// The bytes of a cell.
+void encode(const VisibilityParts& parts, const float* given, const float* factors, std::uint8_t* out) {
+    constexpr double kUnseen = 1e-6; // of what no point of the cell sees: it has the factor of the cell around it
+    std::vector<double> all(parts.boxes()), seen(parts.boxes());
+    double whole = 0.0, visible = 0.0;
+    for (std::size_t p = 0; p < parts.boxes(); ++p) {
+        all[p] = double{given[p]} + kUnseen;
+        seen[p] = all[p] * double{factors[p]};
+        whole += all[p];
+        visible += seen[p];
+    }
+    *out++ = visibility_code(whole > 0.0 ? visible / whole : 1.0);
+    for (std::size_t p = parts.boxes(); p < parts.count(); ++p) *out++ = visibility_code(double{factors[p]});
+    const std::vector<std::array<double, 2>> without = parts.sides(all.data()), with = parts.sides(seen.data());
+    for (std::size_t c = 0; c < with.size(); ++c) {
+        const double lower = with[c][0] / without[c][0], upper = with[c][1] / without[c][1];
+        *out++ = row_code(lower, upper);
+    }
+}
+
+template <class Record>
+void append(std::vector<std::uint8_t>& bytes, const Record* records, std::size_t count) {
+    const auto* first = reinterpret_cast<const std::uint8_t*>(records);
+    bytes.insert(bytes.end(), first, first + count * sizeof(Record));
+}
+
+/// Points of a scene, more of them where cells are small: so many that each cell has about as many.
+class PointsByCell {
+public:
+    PointsByCell(const PointSource& source, std::vector<VisibilityPoint>& points)
+        : source_(source), points_(points) {}
+
+    /// Adds points until there are `count`, or no more are found in `most` candidates.
+    void add(const AcdfVisibility& header, const std::vector<AcdfVisibilitySplit>& splits, std::uint32_t cells,
+             std::size_t count, std::uint64_t most) {
+        const CellNumbers numbers(header, splits, cells);
+        std::vector<std::size_t> of_cell(cells, 0);
+        for (const VisibilityPoint& point : points_) ++of_cell[numbers.of(point)];
+        const std::size_t quota = count / cells + 1;
+        constexpr std::size_t batch = 1 << 16;
+        std::vector<VisibilityPoint> candidates(batch);
+        std::vector<std::uint32_t> cell(batch);
+        for (const std::uint64_t end = next_ + most; next_ < end && points_.size() < count; next_ += batch) {
+            parallel_for(std::size_t{0}, batch, [&](std::size_t i) {
+                const bool there = source_(next_ + i, candidates[i]) && is_near(candidates[i].position);
+                cell[i] = there ? numbers.of(candidates[i]) : cells;
+            });
+            for (std::size_t i = 0; i < batch && points_.size() < count; ++i) {
+                if (cell[i] >= cells || of_cell[cell[i]] >= quota) continue;
+                ++of_cell[cell[i]];
+                points_.push_back(candidates[i]);
+            }
+        }
+    }
+
+private:
+    const PointSource& source_;
+    std::vector<VisibilityPoint>& points_;
+    std::uint64_t next_ = 0;
+};
+
+/// Cells and regions that fill a chunk.
+struct Counts {
+    std::uint32_t cells = 1, regions = 1;
+};
+Counts counts_for(std::uint64_t bytes, std::uint64_t width, std::uint64_t tile_splits) {
+    const std::uint64_t set = tile_splits * sizeof(std::uint16_t), cell = width + sizeof(AcdfVisibilitySplit);
+    const std::uint64_t room = bytes > sizeof(AcdfVisibility) + set ? bytes - sizeof(AcdfVisibility) - set : 0;
+    const auto clamped = [](std::uint64_t cells) {
+        return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(cells, 1, ACDF_VISIBILITY_ROW - 1));
+    };
+    const std::uint64_t regions = std::min<std::uint64_t>(
+        room * kCellsOfRegion / (kCellsOfRegion * (cell + sizeof(std::uint16_t)) + set) / kCellsOfRegion, 0x10000);
+    if (regions < 2) return {clamped(room / cell), 1};
+    return {clamped((room - (regions - 1) * set) / (cell + sizeof(std::uint16_t))),
+            static_cast<std::uint32_t>(regions)};
+}
+
+/// Points of a scene and cells for them, found together in rounds.
+struct DividedVisibility {
+    AcdfVisibility header{};
+    std::vector<VisibilityPoint> points;
+    std::vector<AcdfVisibilitySplit> splits;
+    VisibilityLight light;                 ///< of the first points
+    std::unique_ptr<VisibilityCells> tree; ///< refers to points and light
+};
+
+void divide(DividedVisibility& out, const VisibilityParts& parts, const VisibilityScene& scene, std::uint32_t cells,
+            const std::function<void(double)>& report) {
+    const AcdfVisibility& h = out.header;
+    const VisibilityCells::Box low{h.low[0], h.low[1], h.low[2], -1.0f, -1.0f, -1.0f},
+        high{h.high[0], h.high[1], h.high[2], 1.0f, 1.0f, 1.0f};
+    PointsByCell points(scene.points, out.points);
+    const auto add = [&](std::size_t wanted) {
+        points.add(h, out.splits, out.tree ? out.tree->cell_count() : 1, std::max<std::size_t>(wanted, 1024),
+                   kCandidates * wanted + (1u << 20));
+    };
+    double before = 0.0;
+    for (std::uint32_t round = 0; round < kRounds; ++round) {
+        const std::uint32_t shift = 2 * (kRounds - 1 - round); // a quarter of points and cells before, and so on
+        add(kPointsOfDivision * std::size_t{cells} >> shift);
+        const double share = std::ldexp(1.0, -int(shift)); // of all
+        trace_visibility(parts, out.points, scene.occluded, out.light, -1.0,
+                         [&](double done) { report(before + 0.8 * (share - before) * done); });
+        out.tree =
+            std::make_unique<VisibilityCells>(out.light, out.points, low, high, std::max(cells >> shift, 1u));
+        out.splits = out.tree->splits(round + 1 == kRounds ? kBlend : 0.0);
+        report(before = share);
+    }
+    add(kPointsOfRow * std::size_t{cells});
+}
+
+} // namespace
+
+std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, const VisibilityScene& scene,
+                                  const VisibilityFrame& frame, const VisibilitySize& size,
+                                  const std::function<void(double)>& progress) {
+    if (!local.blend.tiles || local.fast.grid)
+        throw std::invalid_argument("bins that do not share tiles, and the fast shape, have no visibility cells");
+    const auto report = [&](double share) {
+        if (progress) progress(share);
+    };
+    const std::uint32_t splits_of_tiles = local.blend.tiles->tile_count - 1;
+    const PortalSet* portals = scene.portals.get();
+    const std::uint32_t usual = portals ? kColumnsBesidePortals : kColumns;
+    const VisibilityParts coarse(local, bins, size.columns > 0 ? size.columns : usual);
+    const std::uint64_t width = 1 + local.bright_tile_count + coarse.column_count();
+    const Counts counts = portals ? counts_for(size.bytes - std::min<std::uint64_t>(size.bytes, portals->bytes()),
+                                               width + portals->row_bytes(), splits_of_tiles)
+                                  : counts_for(size.bytes, width, splits_of_tiles);
+
+    DividedVisibility division;
+    division.header = header_of(scene.points, frame);
+    divide(division, coarse, scene, counts.cells, [&](double share) { report(kDivisionShare * share); });
+    const VisibilityCells& tree = *division.tree;
+    const std::vector<VisibilityCells::Range> regions = tree.regions(counts.regions);
+    const std::vector<VisibleShare> shares =
+        shares_of(CellNumbers(division.header, division.splits, tree.cell_count()), division.points);
+
+    std::vector<std::uint16_t> columns(regions.size() * splits_of_tiles), set_of_row(tree.cell_count());
+    std::vector<std::uint8_t> rows(tree.cell_count() * width);
+    std::atomic<std::size_t> done{0};
+    parallel_for(std::size_t{0}, regions.size(), [&](std::size_t r) {
+        const VisibilityParts parts(coarse, tree.loss(regions[r]));
+        const VisibilityRows told =
+            visibility_rows(parts, tree, regions[r], shares, division.points, scene.occluded, division.light.dark);
+        std::copy(parts.columns().begin(), parts.columns().end(),
+                  columns.begin() + std::ptrdiff_t(r * splits_of_tiles));
+        for (std::uint32_t cell = regions[r].begin; cell < regions[r].end; ++cell) {
+            const std::size_t first = (cell - regions[r].begin) * parts.count();
+            encode(parts, &told.all[first], &told.factors[first], &rows[cell * width]);
+            set_of_row[cell] = static_cast<std::uint16_t>(r);
+        }
+        report(kDivisionShare + (1.0 - kDivisionShare) * double(++done) / double(regions.size()));
+    });
+
+    AcdfVisibility& header = division.header;
+    header.split_count = static_cast<std::uint32_t>(division.splits.size());
+    header.row_count = tree.cell_count();
+    header.column_count = coarse.column_count();
+    header.further_sets = static_cast<std::uint32_t>(regions.size() - 1);
+    if (header.further_sets == 0) set_of_row.clear();
+    Chunk chunk{ACDF_CHUNK_VISIBILITY, {}};
+    append(chunk.bytes, &header, 1);
+    append(chunk.bytes, division.splits.data(), division.splits.size());
+    append(chunk.bytes, columns.data(), columns.size());
+    append(chunk.bytes, set_of_row.data(), set_of_row.size());
+    append(chunk.bytes, rows.data(), rows.size());
+    std::vector<Chunk> chunks{std::move(chunk)};
+    if (portals)
+        chunks.push_back(portal_chunk(local, *portals, shares, division.points, tree.cell_count(), scene.occluded));
+    report(1.0);
+    return chunks;
+}
+
+} // namespace acdf::compress

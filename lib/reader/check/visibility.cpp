@@ -1,0 +1,153 @@
+// What of the light reaches a place: PLAC. Linear in its bytes.
+#include "check/checker.h"
+
+#include <cmath>
+
+namespace acdf {
+
+namespace {
+
+using u8 = std::uint8_t;
+using u32 = std::uint32_t;
+using u64 = std::uint64_t;
+using ull = unsigned long long;
+
+u64 columns_at(const AcdfVisibility& header) {
+    return sizeof header + u64{header.split_count} * sizeof(AcdfVisibilitySplit);
+}
+u64 sets_at(const AcdfVisibility& header, u32 tile_splits) {
+    return columns_at(header) + (1 + u64{header.further_sets}) * tile_splits * sizeof(std::uint16_t);
+}
+// Rows begin where columns and their sets end: they need no alignment.
+u64 rows_at(const AcdfVisibility& header, u32 tile_splits) {
+    return sets_at(header, tile_splits) +
+           (header.further_sets > 0 ? u64{header.row_count} * sizeof(std::uint16_t) : 0);
+}
+
+bool check_size(const Payload& payload, u32 bright_tiles, u32 tile_splits, Report& report) {
+    if (payload.size < sizeof(AcdfVisibility)) {
+        report.add(7009, payload.at(0), "PLAC has %llu bytes", static_cast<ull>(payload.size));
+        return false;
+    }
+    const AcdfVisibility& h = *reinterpret_cast<const AcdfVisibility*>(payload.data);
+    if (h.row_count < 1 || h.row_count >= ACDF_VISIBILITY_ROW || h.split_count >= ACDF_VISIBILITY_ROW ||
+        h.column_count > tile_splits || h.further_sets > 0xFFFF) {
+        report.add(7009, payload.at(0), "%u splits, %u rows, %u columns, %u further sets of them", h.split_count,
+                   h.row_count, h.column_count, h.further_sets);
+        return false;
+    }
+    const u64 size = rows_at(h, tile_splits) + u64{h.row_count} * (1 + bright_tiles + h.column_count);
+    if (payload.size != size)
+        report.add(7009, payload.at(0), "PLAC has %llu bytes instead of %llu", static_cast<ull>(payload.size),
+                   static_cast<ull>(size));
+    return payload.size == size;
+}
+
+void check_bounds(const Payload& payload, const AcdfVisibility& h, Report& report) {
+    for (int k = 0; k < 3; ++k) {
+        bool right = std::isfinite(h.low[k]) && std::isfinite(h.high[k]) && h.low[k] < h.high[k];
+        for (const float t : h.transform[k]) right = right && std::isfinite(t);
+        if (!right) report.add(7010, payload.at(offsetof(AcdfVisibility, low)), "coordinate %d", k);
+    }
+}
+
+// Walks the splits in preorder. A path's upper parts wait on a stack as deep as paths may be.
+bool check_splits(const Payload& payload, const AcdfVisibility& h, const AcdfVisibilitySplit* splits,
+                  Report& report) {
+    struct Open {
+        u32 node, depth;
+    } open[ACDF_MAX_VISIBILITY_DEPTH + 1];
+    const auto at = [&](u32 split) { return payload.at(sizeof h + u64{split} * sizeof *splits); };
+    u32 count = 0, next = 0;
+    open[count++] = {h.split_count > 0 ? 0 : ACDF_VISIBILITY_ROW, 0};
+    while (count > 0) {
+        const Open now = open[--count];
+        if (now.node & ACDF_VISIBILITY_ROW) {
+            if ((now.node & ~ACDF_VISIBILITY_ROW) < h.row_count) continue;
+            report.add(7011, at(0), "row %u of %u", now.node & ~ACDF_VISIBILITY_ROW, h.row_count);
+            return false;
+        }
+        if (now.node != next || next >= h.split_count || now.depth == ACDF_MAX_VISIBILITY_DEPTH) {
+            report.add(7011, at(0), "split %u, %u deep, comes where %u of %u is due", now.node, now.depth, next,
+                       h.split_count);
+            return false;
+        }
+        const AcdfVisibilitySplit& split = splits[next];
+        if ((split.lower & 7u) > 5 || !std::isfinite(split.position) || !std::isfinite(split.blend) ||
+            !(split.blend >= 0.0f))
+            report.add(7012, at(next), "split %u: axis %u, position %g, blend %g", next, split.lower & 7u,
+                       static_cast<double>(split.position), static_cast<double>(split.blend));
+        ++next;
+        open[count++] = {split.upper, now.depth + 1};
+        open[count++] = {split.lower >> 3, now.depth + 1};
+    }
+    if (next != h.split_count) report.add(7011, at(0), "%u of %u splits are met", next, h.split_count);
+    return next == h.split_count;
+}
+
+void check_columns(const Payload& payload, const AcdfVisibility& h, const std::uint16_t* columns, u32 tile_splits,
+                   Report& report) {
+    for (u32 set = 0; set <= h.further_sets; ++set, columns += tile_splits) {
+        u32 next = 0, wrong = tile_splits;
+        for (u32 i = 0; i < tile_splits; ++i) {
+            if (columns[i] == ACDF_NO_COLUMN) continue;
+            if (columns[i] != next++ && wrong == tile_splits) wrong = i;
+        }
+        if (wrong == tile_splits && next == h.column_count) continue;
+        report.add(7013, payload.at(columns_at(h)), "%u columns are there in set %u, the header says %u", next, set,
+                   h.column_count);
+        return;
+    }
+}
+
+bool check_sets(const Payload& payload, const AcdfVisibility& h, const std::uint16_t* set_of_row, u32 tile_splits,
+                Report& report) {
+    for (u32 row = 0; set_of_row && row < h.row_count; ++row) {
+        if (set_of_row[row] <= h.further_sets) continue;
+        report.add(7015, payload.at(sets_at(h, tile_splits) + u64{row} * sizeof *set_of_row), "row %u", row);
+        return false;
+    }
+    return true;
+}
+
+void check_odds(const Payload& payload, const AcdfVisibilityTable& table, u32 tile_splits, Report& report) {
+    const AcdfVisibility& h = *table.header;
+    const u64 first = 1 + u64{table.bright_tile_count}, width = first + h.column_count;
+    for (u32 row = 0; row < h.row_count; ++row)
+        for (u64 i = first; i < width; ++i) {
+            const u8 code = table.rows[row * width + i];
+            if (code != 0 && code != 255) continue;
+            report.add(7014, payload.at(rows_at(h, tile_splits) + row * width + i), "row %u", row);
+            return;
+        }
+}
+
+} // namespace
+
+void check_visibility(const Payload& payload, Report& report, Parts& parts) noexcept {
+    if (!parts.local) return; // told elsewhere
+    if (!parts.tiles) {
+        report.add(7009, payload.at(0), "there are visibility cells, but no tiles");
+        return;
+    }
+    const u32 tile_splits = parts.tiles->tile_count - 1;
+    if (!check_size(payload, parts.local->bright_tile_count, tile_splits, report)) return;
+    const auto* header = reinterpret_cast<const AcdfVisibility*>(payload.data);
+    const auto* splits = reinterpret_cast<const AcdfVisibilitySplit*>(header + 1);
+    const auto* columns = reinterpret_cast<const std::uint16_t*>(splits + header->split_count);
+    const auto* sets = reinterpret_cast<const std::uint16_t*>(payload.data + sets_at(*header, tile_splits));
+    const AcdfVisibilityTable table{header,
+                                    splits,
+                                    columns,
+                                    header->further_sets > 0 ? sets : nullptr,
+                                    payload.data + rows_at(*header, tile_splits),
+                                    parts.local->bright_tile_count};
+    check_bounds(payload, *header, report);
+    const bool split = check_splits(payload, *header, splits, report);
+    const bool right = check_sets(payload, *header, table.set_of_row, tile_splits, report) && split;
+    check_columns(payload, *header, columns, tile_splits, report);
+    check_odds(payload, table, tile_splits, report);
+    if (right) parts.visibility = table;
+}
+
+} // namespace acdf

@@ -1,0 +1,312 @@
+// Files with visibility cells: a floor with a wall on it, in the light of a sky with a sun. Exact sums are the
+// judge.
+#include "tests/inputs/directions.h"
+#include "tests/inputs/sanitized.h"
+
+#include <acdf/builder.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace acdf;
+using acdf_test::kPi;
+using acdf_test::Normal;
+using acdf_test::random_direction;
+using acdf_test::uniform;
+using builder::VisibilityPoint;
+
+constexpr int kColumns = 96, kRows = 48;
+
+struct Offset {
+    double x, y, z;
+};
+
+Offset direction_of(double column, double row) {
+    const double theta = kPi * row / kRows, phi = kPi - 2.0 * kPi * column / kColumns;
+    return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+double radiance(int column, int row) {
+    if (column >= 40 && column < 42 && row == 12) return 900.0; // a sun, 45 degrees above +x
+    const Offset d = direction_of(column + 0.5, row + 0.5);
+    return d.z < 0.0 ? 0.05 : 0.3 + d.z + 0.5 * ((column * 7 + row * 13) % 11) / 11.0 + (d.x > 0.7 ? 4.0 : 0.0);
+}
+
+const builder::Target& target() {
+    static const builder::Target made = [] {
+        std::vector<float> rgb;
+        for (int r = 0; r < kRows; ++r)
+            for (int c = 0; c < kColumns; ++c) rgb.insert(rgb.end(), 3, float(radiance(c, r)));
+        builder::Pixels pixels;
+        pixels.data = rgb.data();
+        pixels.width = kColumns;
+        pixels.height = kRows;
+        builder::Target out;
+        EXPECT_TRUE(builder::Target::from(pixels, {}, out).ok());
+        return out;
+    }();
+    return made;
+}
+
+/// A wall at x = 1, or one elsewhere, or none.
+struct Wall {
+    double x = 1.0, low = -3.0, high = 3.0, top = 2.0;
+
+    bool hides(const float p[3], const float d[3]) const {
+        const double t = (x - p[0]) / d[0];
+        if (!(t > 1e-6) || !std::isfinite(t)) return false;
+        const double y = p[1] + t * d[1], z = p[2] + t * d[2];
+        return y > low && y < high && z > 0.0 && z < top;
+    }
+};
+
+/// The floor from -4 to 4, and the wall's two sides.
+bool point_of(std::uint64_t index, VisibilityPoint& point) {
+    std::uint64_t state = index; // SplitMix64 (Steele et al. 2014)
+    const auto u = [&] {
+        std::uint64_t z = state += 0x9E3779B97F4A7C15u;
+        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+        z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+        return float(double((z ^ z >> 31) >> 11) * 0x1p-53);
+    };
+    const float a = u(), b = u();
+    if (index % 4 != 0) {
+        point = {{8.0f * a - 4.0f, 8.0f * b - 4.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
+    } else {
+        const float side = index % 8 == 0 ? 1.0f : -1.0f;
+        point = {{1.0f + 1e-3f * side, 6.0f * a - 3.0f, 2.0f * b}, {side, 0.0f, 0.0f}};
+    }
+    return true;
+}
+
+builder::LocalOptions options(std::uint64_t bytes) {
+    builder::LocalOptions out;
+    out.goal = builder::Goal::of_budget(bytes);
+    return out;
+}
+
+builder::LocalOptions with_visibility(std::uint64_t bytes) {
+    builder::LocalOptions out = options(bytes);
+    out.visibility.point = point_of;
+    out.visibility.occluded = [](const VisibilityPoint& p, const float* d) { return Wall().hides(p.position, d); };
+    return out;
+}
+
+struct Built {
+    builder::Local local;
+    File file;
+
+    explicit Built(const builder::LocalOptions& options) {
+        const builder::Status status = builder::local(target(), options, local);
+        EXPECT_TRUE(status.ok()) << status.message;
+        EXPECT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
+    }
+    LocalEnvironmentView view() const { return file.local(); }
+};
+
+const Built& placed() {
+    static const Built built(with_visibility(96 << 10));
+    return built;
+}
+const Built& plain() {
+    static const Built built(options(96 << 10));
+    return built;
+}
+
+/// What arrives at a point, exactly (of light in the middles of texels), and the variance of one sample.
+struct Exact {
+    double irradiance = 0.0, variance = 0.0;
+    int lost = 0; ///< texels whose light is never sampled
+};
+
+Exact exact(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const VisibilityPoint& point,
+            const Wall& wall) {
+    Exact out;
+    double square = 0.0;
+    for (int r = 0; r < kRows; ++r)
+        for (int c = 0; c < kColumns; ++c) {
+            const Offset w = direction_of(c + 0.5, r + 0.5);
+            const float d[3] = {float(w.x), float(w.y), float(w.z)};
+            const double cosine =
+                w.x * double{point.normal[0]} + w.y * double{point.normal[1]} + w.z * double{point.normal[2]};
+            if (!(cosine > 0.0) || wall.hides(point.position, d)) continue;
+            const double angle =
+                2.0 * kPi / kColumns * (std::cos(kPi * r / kRows) - std::cos(kPi * (r + 1) / kRows));
+            const double f = radiance(c, r) * cosine, p = double{view.pdf(at, d)};
+            out.irradiance += f * angle;
+            out.lost += !(p > 0.0);
+            if (p > 0.0) square += f * f / p * angle;
+        }
+    out.variance = square - out.irradiance * out.irradiance;
+    return out;
+}
+
+/// The texel that a direction lies in, and its middle: what `exact` sums.
+double sampled(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const VisibilityPoint& point,
+               const Wall& wall, double u0, double u1) {
+    const DirectionSample s = view.sample(at, u0, u1);
+    if (!(s.pdf > 0.0f)) return 0.0;
+    const double theta = std::acos(double{s.direction[2]}),
+                 phi = std::atan2(double{s.direction[1]}, double{s.direction[0]});
+    const int r = std::min(int(theta / kPi * kRows), kRows - 1),
+              c = std::min(int((kPi - phi) / (2.0 * kPi) * kColumns), kColumns - 1);
+    const Offset w = direction_of(c + 0.5, r + 0.5);
+    const float d[3] = {float(w.x), float(w.y), float(w.z)};
+    const double cosine =
+        w.x * double{point.normal[0]} + w.y * double{point.normal[1]} + w.z * double{point.normal[2]};
+    if (!(cosine > 0.0) || wall.hides(point.position, d)) return 0.0;
+    return radiance(c, r) * cosine / double{s.pdf};
+}
+
+/// Monte Carlo against summation at `count` points: how far the mean of all deviations, in their standard errors,
+/// is off, and the root of their mean square, which is 1 where both are right.
+void expect_unbiased(const Built& built, const Wall& wall, int count) {
+    constexpr int samples = 2000;
+    count = acdf_test::repeated(count);
+    std::mt19937_64 random(3);
+    double sum = 0.0, square = 0.0;
+    for (int i = 0; i < count; ++i) {
+        VisibilityPoint point;
+        point_of(1000003 + std::uint64_t(i), point);
+        const AcdfLocalPoint at = built.view().at(point.position, point.normal);
+        EXPECT_GT(at.visibility.count, 0);
+        const Exact truth = exact(built.view(), at, point, wall);
+        EXPECT_EQ(truth.lost, 0);
+        double mean = 0.0;
+        for (int k = 0; k < samples; ++k)
+            mean += sampled(built.view(), at, point, wall, uniform(random), uniform(random)) / samples;
+        const double error =
+            std::sqrt(std::max(truth.variance, 1e-9 * truth.irradiance * truth.irradiance) / samples);
+        const double z = error > 0.0 ? (mean - truth.irradiance) / error : mean;
+        sum += z;
+        square += z * z;
+    }
+    EXPECT_LT(std::fabs(sum / std::sqrt(count)), 4.0);
+    EXPECT_NEAR(std::sqrt(square / count), 1.0, std::max(0.2, 4.8 / std::sqrt(2.0 * count)));
+}
+
+TEST(VisibilityFiles, AreUnbiased) {
+    ACDF_NOT_SANITIZED();
+    expect_unbiased(placed(), Wall(), 1000);
+}
+TEST(VisibilityFiles, AreUnbiasedWhereTheWallIsGone) {
+    ACDF_NOT_SANITIZED();
+    expect_unbiased(placed(), {1.0, 0.0, 0.0, 0.0}, 300);
+}
+TEST(VisibilityFiles, AreUnbiasedWhereTheWallStandsElsewhere) {
+    expect_unbiased(placed(), {-2.0, -1.0, 4.0, 3.0}, 300);
+}
+
+TEST(VisibilityFiles, FillTheirBudget) {
+    EXPECT_LE(placed().local.bytes.size(), 96u << 10);
+    EXPECT_GE(placed().local.bytes.size(), 90u << 10);
+    EXPECT_TRUE(placed().view().has_visibility());
+    EXPECT_FALSE(plain().view().has_visibility());
+}
+
+/// What cannot be had is told in bytes of the whole file.
+TEST(VisibilityFiles, AreNotMadeLargerThanTheirBudget) {
+    builder::Local result;
+    const builder::Status status = builder::local(target(), with_visibility(4 << 10), result);
+    EXPECT_EQ(status.code, builder::ErrorCode::out_of_reach);
+    const std::string text = status.message,
+                      start = "a size of 4096 bytes is out of reach; the least that can be had is about ";
+    ASSERT_EQ(text.rfind(start, 0), 0u) << text;
+    const std::uint64_t least = std::stoull(text.substr(start.size())), enough = least + least / 4;
+    const Built built(with_visibility(enough));
+    EXPECT_LE(built.local.bytes.size(), enough);
+    EXPECT_TRUE(built.view().has_visibility());
+}
+
+/// Floats tell no margin around a floor that is flat and far away.
+TEST(VisibilityFiles, OfAFloorFarFromTheOrigin) {
+    builder::LocalOptions far = with_visibility(16 << 10);
+    far.visibility.point = [](std::uint64_t index, VisibilityPoint& point) {
+        point_of(index, point);
+        point = {{point.position[0], point.position[1], 1e7f}, {0.0f, 0.0f, 1.0f}};
+        if (index % 5 == 0) point.position[2] = 3e38f; // no place is so far out
+        return true;
+    };
+    far.visibility.occluded = [](const VisibilityPoint&, const float*) { return false; };
+    const Built built(far);
+    EXPECT_TRUE(built.view().has_visibility());
+    const float at[3] = {1.0f, 2.0f, 1e7f}, up[3] = {0.0f, 0.0f, 1.0f};
+    EXPECT_GT(built.view().at(at, up).visibility.count, 0);
+}
+
+TEST(VisibilityFiles, SampleWhatAPositionSees) {
+    double local = 0.0, place = 0.0;
+    for (int i = 0; i < 250; ++i) {
+        VisibilityPoint point;
+        point_of(2000003 + std::uint64_t(i), point);
+        const Exact with = exact(placed().view(), placed().view().at(point.position, point.normal), point, Wall());
+        const Exact without = exact(plain().view(), plain().view().at(point.normal), point, Wall());
+        if (!(with.irradiance > 0.0)) continue;
+        place += with.variance / (with.irradiance * with.irradiance);
+        local += without.variance / (without.irradiance * without.irradiance);
+    }
+    EXPECT_LT(place, local / 3.0) << local / place;
+}
+
+TEST(VisibilityFiles, LoseNothingThatANormalMaySee) {
+    std::mt19937_64 random(7);
+    for (int i = 0; i < 100000; ++i) {
+        const Normal normal = random_direction(random), direction = random_direction(random);
+        const float *const n = normal.data(), *const d = direction.data();
+        const float x[3] = {float(9.0 * uniform(random) - 4.5), float(9.0 * uniform(random) - 4.5),
+                            float(2.5 * uniform(random) - 0.2)};
+        const bool drawn = placed().view().pdf(placed().view().at(x, n), d) > 0.0f;
+        ASSERT_EQ(drawn, placed().view().pdf(n, d) > 0.0f);
+        const double cosine =
+            double{n[0]} * double{d[0]} + double{n[1]} * double{d[1]} + double{n[2]} * double{d[2]};
+        if (cosine > 1e-3) { // there is light everywhere
+            ASSERT_TRUE(drawn);
+        }
+    }
+}
+
+TEST(VisibilityFiles, AreTheSameForAnyNumberOfThreads) {
+    ACDF_NOT_SANITIZED();
+    for (int threads : {1, 3}) {
+        builder::Local again;
+        builder::Control control;
+        control.threads = threads;
+        ASSERT_TRUE(builder::local(target(), with_visibility(24 << 10), again, control).ok());
+        static const std::vector<std::uint8_t> first = again.bytes;
+        EXPECT_TRUE(again.bytes == first) << threads;
+    }
+}
+
+TEST(VisibilityFiles, ErrorsAreValues) {
+    using Code = builder::ErrorCode;
+    builder::Local result;
+    const auto code = [&](const builder::LocalOptions& o, const builder::Control& control = {}) {
+        const Code found = builder::local(target(), o, result, control).code;
+        EXPECT_TRUE(result.bytes.empty());
+        return found;
+    };
+    builder::LocalOptions thrown = with_visibility(24 << 10), empty = thrown, half = thrown, cells = thrown;
+    thrown.visibility.occluded = [](const VisibilityPoint&, const float*) -> bool {
+        throw std::runtime_error("no");
+    };
+    EXPECT_EQ(code(thrown), Code::callback_failed);
+    empty.visibility.point = [](std::uint64_t, VisibilityPoint&) { return false; };
+    EXPECT_EQ(code(empty), Code::bad_source);
+    half.visibility.occluded = {};
+    EXPECT_EQ(code(half), Code::invalid_argument);
+    cells.goal = builder::Goal::of_cells(100);
+    EXPECT_EQ(code(cells), Code::invalid_argument);
+    builder::Control control;
+    control.progress = [](double share, const char*) { return share < 0.5; };
+    EXPECT_EQ(code(with_visibility(24 << 10), control), Code::cancelled);
+}
+
+} // namespace

@@ -1,0 +1,57 @@
+#include "tools/cli/mis_options.h"
+
+#include "tools/cli/mis_text.h"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace acdf::tools {
+
+void add_partner(CLI::App& command, builder::Partner& partner, bool mean) {
+    const char* group = "MIS partner";
+    command
+        .add_option_function<std::string>(
+            "--mis",
+            [&partner, mean](const std::string& text) {
+                if (!parse_partner(text, partner) || (!mean && partner.kind == ACDF_PARTNER_MEAN))
+                    throw CLI::ValidationError("--mis", "'" + text + "' is none of none, cosine, brdf" +
+                                                            (mean ? ", mean" : ""));
+            },
+            mean ? "What the file is combined with, by multiple importance sampling: cosine (diffuse surfaces), "
+                   "brdf "
+                   "(lobes of several widths), mean (as if it were the same everywhere: Karlik et al. 2019). Where "
+                   "that is enough the density is 0: never use such a file alone"
+                 : "What the file is combined with, by multiple importance sampling: cosine (diffuse surfaces), "
+                   "brdf "
+                   "(lobes of several widths). Where that is enough the density is 0: never use such a file alone")
+        ->option_text("NAME [none]")
+        ->group(group);
+    add_weighing(command, partner);
+}
+
+void add_weighing(CLI::App& command, builder::Partner& partner) {
+    const char* group = "MIS partner";
+    command
+        .add_option_function<std::string>(
+            "--shares",
+            [&partner](const std::string& text) {
+                if (!parse_shares(text, partner))
+                    throw CLI::ValidationError("--shares", "needs two numbers from 0.001 to 1000 such as 1:1");
+            },
+            "Samples that your renderer takes from the file and from the partner, in proportion")
+        ->option_text("L:B [1:1]")
+        ->group(group);
+    command
+        .add_option_function<std::string>(
+            "--heuristic",
+            [&partner](const std::string& text) {
+                if (!parse_heuristic(text, partner))
+                    throw CLI::ValidationError("--heuristic", "'" + text + "' is none of balance, power");
+            },
+            "How your renderer weighs them: balance, or power (squares)")
+        ->option_text("NAME [balance]")
+        ->group(group);
+}
+
+} // namespace acdf::tools

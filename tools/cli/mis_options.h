@@ -1,0 +1,17 @@
+// Options of files that are made for an MIS partner: --mis, --shares, --heuristic.
+#pragma once
+
+#include <acdf/builder.h>
+
+namespace CLI {
+class App;
+}
+
+namespace acdf::tools {
+
+/// `mean`: whether there is --mis mean.
+void add_partner(CLI::App& command, builder::Partner& partner, bool mean);
+/// Adds --shares and --heuristic.
+void add_weighing(CLI::App& command, builder::Partner& partner);
+
+} // namespace acdf::tools
