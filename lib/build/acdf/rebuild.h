@@ -13,7 +13,7 @@
 //     }
 //
 // Two changes need no rebuild:
-// - Scale. Where all light gets brighter by a factor, no density changes. Multiply what total() returns by the
+// - Scale. Where all light gets brighter by a factor, no pdf changes. Multiply what total() returns by the
 // factor
 //   where you choose between lights:
 //
@@ -44,14 +44,14 @@ struct Region {
     std::uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Makes the files and views of one environment map that changes. Memory, at quality fast: 16 bytes a texel and
-/// four times the largest file; with three channels that count separately 24. An object serves one call at a time;
-/// its views may be used meanwhile.
+/// Makes the files and views of one environment map that changes. Quality fast takes 13 bytes a texel of maps of
+/// more than 2^20 texels, else 25. Sides that are no powers of two take up to twice that. An object serves one call
+/// at a time; its views may be used meanwhile.
 class EnvironmentRebuilder {
 public:
     /// For lat-long maps of width x height pixels, or octahedral ones. Quality fast takes goals of cells and
-    /// budget, the variance fit without a bound on weights, a map's own grid, no partner and no codec; bad texels
-    /// become zero or are refused. ErrorCode::invalid_argument names what it does not take.
+    /// budget, and the variance fit without a bound on weights. It fits a map on its own grid, without a partner
+    /// and a codec. Bad texels become zero or are refused. ErrorCode::invalid_argument names what it does not take.
     static Status make(std::uint32_t width, std::uint32_t height, const EnvironmentOptions& options,
                        EnvironmentRebuilder& result, Quality quality = Quality::fast,
                        Projection projection = Projection::latlong) noexcept;
@@ -60,9 +60,9 @@ public:
     /// shares will do. `pixels` has the size and projection that were given to make. Where the call fails or is
     /// cancelled, the last view and file stay.
     Status rebuild(const Pixels& pixels, const Control& control = {}) noexcept;
-    /// The same where no pixels have changed since the last call but those of a region, the only ones that are
-    /// read: file and view are those of rebuild(), byte for byte. Reads all pixels where the last call failed, or
-    /// where quality is best.
+    /// The same where, since the last call, only the pixels of a region have changed. Only those are read, and file
+    /// and view are those of rebuild(), byte for byte. Reads all pixels where the last call failed, or where
+    /// quality is best.
     Status update(const Pixels& pixels, const Region& region, const Control& control = {}) noexcept;
 
     /// Whether make() has filled it.
@@ -80,6 +80,7 @@ public:
     /// What was mended in the last frame.
     const BadTexels& bad_texels() const noexcept;
 
+    /// Empty until make() fills it. Movable, not copyable.
     EnvironmentRebuilder() noexcept;
     ~EnvironmentRebuilder();
     EnvironmentRebuilder(EnvironmentRebuilder&& other) noexcept;

@@ -95,12 +95,15 @@ Status EnvironmentRebuilder::update(const Pixels& pixels, const Region& region, 
         }
         data.last = next;
     };
-    const bool best = data_ && !data_->fast;
-    if (best || control.threads == 1) {
-        static const Control silent;
-        return guarded_alone(best ? silent : control, work);
-    }
-    return guarded(control, work, []() noexcept {});
+    const auto served = [&]() noexcept {
+        static const Control silent; // environment() reports itself
+        if (data_ && !data_->fast) return guarded_alone(silent, work);
+        if (control.threads == 1) return guarded_alone(control, work);
+        return guarded(control, work, []() noexcept {});
+    };
+    const Status status = served();
+    if (!status.ok() && data_ && data_->fast) data_->fast->forget(); // what has changed since is not said
+    return status;
 }
 
 bool EnvironmentRebuilder::empty() const noexcept { return !data_ || data_->last < 0; }
