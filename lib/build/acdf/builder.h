@@ -400,3 +400,5 @@ std::string option_text(const LocalOptions& options) noexcept;
 std::string option_text(const BrdfOptions& options) noexcept;
 
 } // namespace acdf::builder
+
+#include <acdf/rebuild.h>

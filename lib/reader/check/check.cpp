@@ -294,9 +294,12 @@ void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
 
 } // namespace
 
+Parts::~Parts() { give_block(allocator, halvings_block); }
+
 Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink, void* context, Parts& parts,
               const AcdfAllocator& allocator) noexcept {
     Report report(sink, context);
+    parts.allocator = allocator;
     if (!check_header(bytes, size, report) || report.stopped()) return report.verdict();
     const AcdfHeader& header = *reinterpret_cast<const AcdfHeader*>(bytes);
     ChunkTable table = {};
@@ -325,7 +328,7 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
                        payloads.of[chunk_tree].data ? "TREE" : "BINS");
         if (parts.description->fit != ACDF_FIT_VARIANCE)
             report.add(6035, payloads.of[chunk_halvings].at(0), "with fit %u", parts.description->fit);
-        if (!report.stopped()) check_halvings(payloads.of[chunk_halvings], report, parts);
+        if (!report.stopped()) check_halvings(payloads.of[chunk_halvings], report, allocator, parts);
     } else if (tiles_ok && !report.stopped())
         check_tree(payloads.of[chunk_bins], payloads.of[chunk_tree], header.kind, boxes, report, parts);
     if (header.kind == ACDF_KIND_LOCAL && !report.stopped())

@@ -3,7 +3,6 @@
 
 #include "check/rules.h"
 
-#include <cstdlib>
 #include <cstring>
 #include <type_traits>
 
@@ -55,7 +54,7 @@ struct Parts {
     Parts() = default;
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
-    ~Parts() { std::free(halvings); }
+    ~Parts();
 
     const AcdfDescription* description = nullptr;
     const AcdfAxis* axes = nullptr; ///< description->axis_count
@@ -76,7 +75,9 @@ struct Parts {
     AcdfPortalTable portals = {};                 ///< beside visibility cells; its header is null where absent
     const std::uint8_t* metadata = nullptr;       ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
-    AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV, of the C library
+    AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV
+    AcdfBlock halvings_block = {};   ///< that holds them, of `allocator`
+    AcdfAllocator allocator = {};
     std::uint32_t halving_count = 0;
     class TreeSurvey* survey = nullptr; ///< given by the caller: made where it costs nothing
     AcdfBlock inflated = {};            ///< of the inflated chunks, from take_block; the caller gives it back

@@ -95,7 +95,7 @@ void check_fast(const Payloads& payloads, const TileBoxes& boxes, Report& report
 void check_tree(const Payload& bins, const Payload& tree, std::uint32_t kind, const TileBoxes& boxes,
                 Report& report, Parts& parts) noexcept;
 /// HALV; needs parts.description. Sets parts.halvings.
-void check_halvings(const Payload& payload, Report& report, Parts& parts) noexcept;
+void check_halvings(const Payload& payload, Report& report, const AcdfAllocator& allocator, Parts& parts) noexcept;
 /// What the kind asks of axes and bins; needs parts.description.
 /// Axes 0 and 1 must be those of an environment.
 void check_environment_axes(const Payload& payload, Report& report, const Parts& parts) noexcept;
