@@ -5,6 +5,7 @@
 #include "build/weight_bound.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <algorithm>
 #include <cmath>

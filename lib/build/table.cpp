@@ -7,6 +7,7 @@
 #include "compress/sum.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <algorithm>
 #include <cfloat>

@@ -5,6 +5,7 @@
 #include "input/probe/probe.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cstdint>
 #include <optional>

@@ -3,7 +3,7 @@
 #include "tools/cli/mis_text.h"
 #include "tools/cli/sizes.h"
 
-#include <acdf/cut.h>
+#include <acdf/product/cut.h>
 
 #include <algorithm>
 #include <cctype>

@@ -7,6 +7,7 @@
 #include "tools/sweep/sweep.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <chrono>
 #include <functional>

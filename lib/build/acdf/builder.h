@@ -39,6 +39,7 @@
 #include <acdf/outcome.h>
 #include <acdf/pixels.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -4,7 +4,7 @@
 #include "measure/samplers/light_samplers.h"
 #include "measure/samplers/point_samplers.h"
 
-#include <acdf/product.h>
+#include <acdf/product/product.h>
 
 #include <algorithm>
 #include <cmath>
@@ -196,7 +196,7 @@ std::unique_ptr<LightSampler> warp_of(const File& light, const AnyLobe& lobe, st
 
 std::unique_ptr<LightSampler> product_warp_sampler(const File& light, const File& brdf) {
     if (brdf.kind() != ACDF_KIND_BRDF) throw std::invalid_argument("numbers are bent towards a BRDF, or ggx");
-    return warp_of(light, BrdfLobe(brdf.brdf().data()), memory_of(brdf));
+    return warp_of(light, BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), memory_of(brdf));
 }
 
 std::unique_ptr<LightSampler> product_warp_sampler(const File& light, double alpha) {
