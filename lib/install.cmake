@@ -32,6 +32,8 @@ if(TARGET acdf_builder)
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/builder.h
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/outcome.h
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/pixels.h
+        ${PROJECT_SOURCE_DIR}/lib/build/acdf/rebuild.h
+        ${PROJECT_SOURCE_DIR}/lib/build/acdf/rebuild_c.h
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/renderers.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/acdf COMPONENT builder)
     install(EXPORT acdfBuilderTargets NAMESPACE acdf:: DESTINATION ${ACDF_CMAKE_DIR} COMPONENT builder)

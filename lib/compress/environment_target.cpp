@@ -1,5 +1,6 @@
 // From a probe to what the fit approximates: channels, filter, solid angles.
 #include "compress/parallel.h"
+#include "compress/row_nodes.h"
 #include "compress/sum.h"
 #include "compress/target.h"
 
@@ -31,29 +32,6 @@ struct Integrand {
 struct TexelMoments {
     double mean = 0.0, square = 0.0, peak = 0.0;
 };
-
-/// Nodes and weights of quadrature over a row: heights in texels from the row's upper edge, with the solid angle.
-/// Three Gauss-Legendre points in each half, where the interpolation is smooth.
-struct RowNode {
-    double height, weight;
-};
-std::array<RowNode, 6> row_nodes(const Integrand& f, std::uint32_t row) {
-    constexpr double kOffset = 0.7745966692414834; // sqrt(3/5)
-    const std::array<double, 3> x{0.5 - 0.5 * kOffset, 0.5, 0.5 + 0.5 * kOffset};
-    const std::array<double, 3> w{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-    std::array<RowNode, 6> nodes{};
-    double sum = 0.0;
-    for (std::size_t half = 0; half < 2; ++half)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const double height = 0.5 * (double(half) + x[k]);
-            double sine = 1.0, cosine;
-            if (!f.octahedral) acdf_sincospi((row + height) / f.rows, &sine, &cosine);
-            nodes[3 * half + k] = {height, w[k] * sine};
-            sum += w[k] * sine;
-        }
-    for (RowNode& node : nodes) node.weight /= sum;
-    return nodes;
-}
 
 /// A row of texels with one more at each end and none missing above the first and below the last: what the probe
 /// shows on. Across the seam that is the other end of the row, at a pole the row itself; across a side of the
@@ -103,7 +81,7 @@ void bilinear_row(const Integrand& f, std::size_t plane, std::uint32_t r, std::v
             centre = right;
         }
     };
-    for (const RowNode& node : row_nodes(f, r)) add(node.height, node.weight);
+    for (const RowNode& node : row_nodes(f.octahedral, f.rows, r)) add(node.height, node.weight);
     for (double height : {0.0, 0.5, 1.0}) add(height, 0.0); // f is largest at a corner of a quarter of the texel
 }
 
@@ -116,6 +94,24 @@ void nearest_row(const Integrand& f, std::size_t plane, std::uint32_t r, std::ve
 }
 
 } // namespace
+
+std::array<RowNode, 6> row_nodes(bool octahedral, std::uint32_t rows, std::uint32_t row) {
+    constexpr double kOffset = 0.7745966692414834; // sqrt(3/5)
+    const std::array<double, 3> x{0.5 - 0.5 * kOffset, 0.5, 0.5 + 0.5 * kOffset};
+    const std::array<double, 3> w{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+    std::array<RowNode, 6> nodes{};
+    double sum = 0.0;
+    for (std::size_t half = 0; half < 2; ++half)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double height = 0.5 * (double(half) + x[k]);
+            double sine = 1.0, cosine;
+            if (!octahedral) acdf_sincospi((row + height) / rows, &sine, &cosine);
+            nodes[3 * half + k] = {height, w[k] * sine};
+            sum += w[k] * sine;
+        }
+    for (RowNode& node : nodes) node.weight /= sum;
+    return nodes;
+}
 
 std::uint32_t planes_of(const TargetOptions& options) {
     return options.channels == ACDF_CHANNELS_SEPARATE ? kChannels : 1;

@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <exception>
 #include <functional>
@@ -206,9 +207,55 @@ py::bytes build_table(const py::object& array, const py::dict& given) {
     });
 }
 
+/// EnvironmentRebuilder, whose frames are copied as bytes.
+class Rebuilder {
+public:
+    Rebuilder(std::uint32_t width, std::uint32_t height, const py::dict& given) {
+        const Options options(given);
+        Quality quality = Quality::fast;
+        Projection projection = Projection::latlong;
+        options.choose<Quality>("quality", {{"fast", Quality::fast}, {"best", Quality::best}}, quality);
+        options.choose<Projection>(
+            "projection", {{"latlong", Projection::latlong}, {"octahedral", Projection::octahedral}}, projection);
+        pixels_options_["projection"] = projection == Projection::latlong ? "latlong" : "octahedral";
+        const Status status =
+            EnvironmentRebuilder::make(width, height, environment_options(options), made_, quality, projection);
+        if (!status.ok()) raise(status);
+    }
+
+    /// `region`: None, or x, y, width and height.
+    py::bytes rebuild(const py::object& image, const py::object& region, int threads) {
+        const Numbers held = number_array(image, "image");
+        const Pixels pixels = pixels_of(held, Options(pixels_options_));
+        Region part;
+        if (!region.is_none()) {
+            const auto numbers = region.cast<std::array<std::uint32_t, 4>>();
+            part = {numbers[0], numbers[1], numbers[2], numbers[3]};
+        }
+        Control control;
+        control.threads = threads;
+        Status status;
+        {
+            const py::gil_scoped_release release;
+            status = region.is_none() ? made_.rebuild(pixels, control) : made_.update(pixels, part, control);
+        }
+        if (!status.ok()) raise(status);
+        return py::bytes(reinterpret_cast<const char*>(made_.data()), made_.size());
+    }
+    double relative_variance() const { return made_.empty() ? 0.0 : made_.relative_variance(); }
+
+private:
+    EnvironmentRebuilder made_;
+    py::dict pixels_options_;
+};
+
 } // namespace
 
 void add_build(py::module_& module) {
+    py::class_<Rebuilder>(module, "Rebuilder")
+        .def(py::init<std::uint32_t, std::uint32_t, const py::dict&>())
+        .def("rebuild", &Rebuilder::rebuild)
+        .def("relative_variance", &Rebuilder::relative_variance);
     module.def("build_environment", &build_environment);
     module.def("build_local", &build_local);
     module.def("build_brdf", &build_brdf);

@@ -17,9 +17,12 @@ using u64 = std::uint64_t;
 constexpr u32 most_bits = 7;      // of the lookup grid's axes
 constexpr u32 most_waiting = 128; // nodes that wait: a level of each axis, and one
 
-// The first step of each square of an axis, and behind the last one all steps.
+// The squares of an axis: `step` lies in square step * scale / 2^shift.
 struct Squares {
-    u32 first[(1u << most_bits) + 1];
+    u64 scale;
+    u32 shift;
+
+    u32 of(u32 step) const { return static_cast<u32>(step * scale >> shift); }
 };
 
 template <class T>
@@ -71,11 +74,10 @@ private:
             half[upper].box[axis].end[1 - upper] = acdf_span_middle(&node.box[axis]);
         }
         const u32 border = by_position_ ? acdf_span_middle(&node.box[axis]) : halving.threshold;
-        const u32* first = axes_[axis].first;
-        u32 below = node.squares[axis].end[0], above;
-        while (below < node.squares[axis].end[1] && first[below + 1] <= border) ++below;
-        above = below;
-        while (above < node.squares[axis].end[1] && first[above] < border) ++above;
+        // Squares that end below the border, and those that begin below it: one more, where it lies within one.
+        const AcdfSpan all = node.squares[axis];
+        const u32 below = within(all, axes_[axis].of(border));
+        const u32 above = border > 0 ? within(all, axes_[axis].of(border - 1) + 1) : below;
         half[0].squares[axis].end[1] = below;
         half[1].squares[axis].end[0] = above;
         AcdfSpan across[2] = {node.squares[0], node.squares[1]};
@@ -83,6 +85,10 @@ private:
         put(node, across);
         for (u32 upper = 2; upper-- > 0;)
             if (has_any(half[upper].squares)) open_[open_count_++] = half[upper];
+    }
+
+    static u32 within(const AcdfSpan& span, u32 square) {
+        return square < span.end[0] ? span.end[0] : square > span.end[1] ? span.end[1] : square;
     }
 
     static bool has_any(const AcdfSpan squares[2]) {
@@ -131,22 +137,6 @@ private:
 
 u32 position_scale(u32 resolution, u32 bits) { return static_cast<u32>((u64{1} << (32 + bits)) / resolution); }
 
-Squares number_squares(u32 bits) {
-    Squares out;
-    for (u32 i = 0; i <= 1u << bits; ++i) out.first[i] = i << (31 - bits);
-    return out;
-}
-
-Squares position_squares(u32 resolution, u32 bits) {
-    Squares out;
-    u32 square = 0;
-    for (u32 step = 0; step < resolution; ++step)
-        for (const u64 of = u64{step} * position_scale(resolution, bits) >> 32; square <= of;)
-            out.first[square++] = step;
-    while (square <= 1u << bits) out.first[square++] = resolution;
-    return out;
-}
-
 bool is_latlong(const HalvedSource& source) { return source.parameterization == ACDF_PARAM_LATLONG; }
 
 // A square for one to four cells.
@@ -194,8 +184,8 @@ AcdfHalvedTree* make_halved_tree(const HalvedSource& source, const AcdfAllocator
     LookupMaker maker(source, bits);
     if (bits) {
         for (int axis = 0; axis < 2; ++axis) {
-            by_number[axis] = number_squares(bits);
-            by_position[axis] = position_squares(source.resolution[axis], bits);
+            by_number[axis] = {1, 31 - bits};
+            by_position[axis] = {position_scale(source.resolution[axis], bits), 32};
         }
         maker.make(by_number, false, nullptr, nullptr);
         maker.make(by_position, true, nullptr, nullptr);

@@ -401,3 +401,5 @@ std::string option_text(const LocalOptions& options) noexcept;
 std::string option_text(const BrdfOptions& options) noexcept;
 
 } // namespace acdf::builder
+
+#include <acdf/rebuild.h>

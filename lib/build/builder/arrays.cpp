@@ -54,7 +54,8 @@ void check(const Array& array) {
     }
     require(array.strides.empty() || array.strides.size() == array.shape.size(),
             "an array has one stride an axis, or none");
-    check_strides(axes_of(array), size_of(array.number));
+    std::vector<StridedAxis> axes = axes_of(array);
+    check_strides(axes.data(), axes.size(), size_of(array.number));
 }
 
 build::Array to_floats(const Array& array, BadNumbers& bad) {

@@ -50,6 +50,8 @@ void require(bool holds, const char* what) {
 Status current_status() noexcept {
     try {
         throw;
+    } catch (const Status& status) {
+        return status;
     } catch (const build::OptionError& error) {
         return status_of(ErrorCode::invalid_argument, error.what());
     } catch (const build::NoEnergy& error) {

@@ -5,6 +5,10 @@
 #include "build/probe/projection.h"
 #include "compress/parallel.h"
 
+#include <cstring>
+#include <iterator>
+#include <type_traits>
+
 namespace acdf::builder {
 namespace {
 
@@ -46,8 +50,8 @@ void check(const Pixels& pixels) {
             "pixels.projection is no Projection");
     const Strides strides = strides_of(pixels);
     const std::uint32_t used = pixels.channels == 1 ? 1 : 3;
-    check_strides({{pixels.height, strides.row}, {pixels.width, strides.pixel}, {used, strides.channel}},
-                  size_of(pixels.number));
+    StridedAxis axes[] = {{pixels.height, strides.row}, {pixels.width, strides.pixel}, {used, strides.channel}};
+    check_strides(axes, std::size(axes), size_of(pixels.number));
     const build::Map map{pixels.projection, static_cast<int>(pixels.width), static_cast<int>(pixels.height)};
     require(build::has_shape(map),
             "pixels do not have the shape of their projection: discs and octahedral maps are square, cubes 3:4 "
@@ -59,17 +63,59 @@ void check(const Rows& rows) {
     require(static_cast<bool>(rows.read), "rows.read is empty");
 }
 
-void read_rows(const Pixels& pixels, std::uint32_t first, std::uint32_t count, float* rgb) {
+namespace {
+
+template <class T>
+float number_of(const unsigned char* at) {
+    T value;
+    std::memcpy(&value, at, sizeof value);
+    if constexpr (std::is_same_v<T, std::uint16_t>) return half_to_float(value);
+    else return static_cast<float>(value);
+}
+
+template <class T>
+void read_as(const unsigned char* pixel, const Strides& strides, std::uint32_t channels, std::uint32_t count,
+             float* rgb) {
+    const std::ptrdiff_t next = channels == 1 ? 0 : strides.channel; // grey: the same three times
+    if (next == sizeof(T) && strides.pixel == 3 * sizeof(T)) {
+        if constexpr (std::is_same_v<T, float>) std::memcpy(rgb, pixel, std::size_t{3} * count * sizeof(T));
+        else
+            for (std::size_t i = 0; i < std::size_t{3} * count; ++i) rgb[i] = number_of<T>(pixel + i * sizeof(T));
+        return;
+    }
+    for (std::uint32_t x = 0; x < count; ++x, pixel += strides.pixel, rgb += 3) {
+        rgb[0] = number_of<T>(pixel);
+        rgb[1] = number_of<T>(pixel + next);
+        rgb[2] = number_of<T>(pixel + 2 * next);
+    }
+}
+
+} // namespace
+
+void read_texels(const Pixels& pixels, std::uint32_t x, std::uint32_t y, std::uint32_t count, float* rgb) {
     const Strides strides = strides_of(pixels);
-    const std::ptrdiff_t next = pixels.channels == 1 ? 0 : strides.channel; // grey: the same three times
+    const auto* first = static_cast<const unsigned char*>(pixels.data) + std::ptrdiff_t{y} * strides.row +
+                        std::ptrdiff_t{x} * strides.pixel;
+    const auto read = pixels.number == Number::float32   ? read_as<float>
+                      : pixels.number == Number::float16 ? read_as<std::uint16_t>
+                                                         : read_as<double>;
+    read(first, strides, pixels.channels, count, rgb);
+}
+
+const float* packed_texels(const Pixels& pixels, std::uint32_t x, std::uint32_t y) {
+    const Strides strides = strides_of(pixels);
+    if (pixels.number != Number::float32 || pixels.channels == 1 || strides.channel != sizeof(float) ||
+        strides.pixel != 3 * sizeof(float))
+        return nullptr;
+    const auto* first = static_cast<const unsigned char*>(pixels.data) + std::ptrdiff_t{y} * strides.row +
+                        std::ptrdiff_t{x} * strides.pixel;
+    if (reinterpret_cast<std::uintptr_t>(first) % alignof(float) != 0) return nullptr;
+    return reinterpret_cast<const float*>(first);
+}
+
+void read_rows(const Pixels& pixels, std::uint32_t first, std::uint32_t count, float* rgb) {
     compress::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t r) {
-        const auto* row =
-            static_cast<const unsigned char*>(pixels.data) + static_cast<std::ptrdiff_t>(first + r) * strides.row;
-        float* out = rgb + std::size_t{3} * r * pixels.width;
-        for (std::uint32_t x = 0; x < pixels.width; ++x) {
-            const unsigned char* pixel = row + static_cast<std::ptrdiff_t>(x) * strides.pixel;
-            for (int k = 0; k < 3; ++k) *out++ = static_cast<float>(number_at(pixels.number, pixel + k * next));
-        }
+        read_texels(pixels, 0, first + r, pixels.width, rgb + std::size_t{3} * r * pixels.width);
     });
 }
 

@@ -3,7 +3,6 @@
 #include "build/builder/guard.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace acdf::builder {
@@ -20,27 +19,17 @@ std::size_t size_of(Number number) {
     return 0;
 }
 
-float half_to_float(std::uint16_t half) {
-    const int exponent = half >> 10 & 31, mantissa = half & 1023;
-    float value;
-    if (exponent == 31)
-        value = mantissa ? std::numeric_limits<float>::quiet_NaN() : std::numeric_limits<float>::infinity();
-    else if (exponent == 0) value = std::ldexp(static_cast<float>(mantissa), -24);
-    else value = std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25);
-    return half & 0x8000 ? -value : value;
-}
-
-void check_strides(std::vector<StridedAxis> axes, std::size_t item) {
+void check_strides(StridedAxis* axes, std::size_t count, std::size_t item) {
     constexpr std::uint64_t reach = std::numeric_limits<std::ptrdiff_t>::max();
     const auto step = [](const StridedAxis& axis) {
         const auto stride = static_cast<std::uint64_t>(axis.stride);
         return axis.stride < 0 ? ~stride + 1 : stride;
     };
-    std::sort(axes.begin(), axes.end(),
-              [&](const StridedAxis& a, const StridedAxis& b) { return step(a) < step(b); });
+    std::sort(axes, axes + count, [&](const StridedAxis& a, const StridedAxis& b) { return step(a) < step(b); });
     // From the finest on, a step must leave all behind that the finer axes span.
     std::uint64_t span = item;
-    for (const StridedAxis& axis : axes) {
+    for (const StridedAxis* at = axes; at != axes + count; ++at) {
+        const StridedAxis& axis = *at;
         if (axis.length == 1) continue;
         require(step(axis) >= span, "the strides are too short: numbers overlap");
         require(step(axis) <= (reach - span) / (axis.length - 1), "the strides reach farther than memory does");

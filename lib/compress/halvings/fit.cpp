@@ -1,6 +1,7 @@
 #include "compress/halvings/fit.h"
 
 #include "compress/fit/refusals.h"
+#include "compress/halvings/code_bits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,27 +12,6 @@
 
 namespace acdf::compress {
 namespace {
-
-constexpr std::uint32_t kAxisBits = 1; // two axes
-constexpr std::uint32_t kCodeBits[] = {6, 7, 8, 9, 10, 12};
-constexpr std::uint32_t kFewestCodeBits = kCodeBits[0], kMostCodeBits = 12;
-constexpr std::uint32_t kUsualCodeBits = 8;
-/// A code of 8 bits adds about so much to the relative variance a level of the tree, one of b bits 4^(8 - b) times
-/// that.
-constexpr double kEven = 4e-6; // relative variance of one cell
-constexpr double kLossOfLevel = 1.3e-5;
-
-/// The most leaves that fit into a chunk.
-std::size_t leaves_within(std::uint64_t bytes, std::uint32_t code_bits) {
-    const std::uint64_t bits = std::min<std::uint64_t>(bytes, std::uint64_t{1} << 32) * 8;
-    std::size_t leaves = std::min<std::uint64_t>(bits / (2 + kAxisBits + code_bits) + 1, ACDF_MOST_HALVINGS);
-    while (leaves > 0 && halvings_bytes(leaves, kAxisBits, code_bits) > bytes) --leaves;
-    return leaves;
-}
-
-double predicted_loss(std::size_t leaves, std::uint32_t code_bits) {
-    return kLossOfLevel * std::log2(double(leaves) + 1.0) * std::exp2(2.0 * (8.0 - double(code_bits)));
-}
 
 class HalvingsFit {
 public:

@@ -7,6 +7,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <stdexcept>
 
@@ -27,6 +28,8 @@ struct Payload {
     std::uint32_t flags;
     Bytes raw;
 };
+
+} // namespace
 
 Bytes description_payload(const Description& d) {
     AcdfDescription out = {};
@@ -57,12 +60,16 @@ Bytes description_payload(const Description& d) {
     return bytes;
 }
 
+namespace {
+
 Bytes bins_payload(const EncodedTree& tree, const Description& d) {
     if (tree.roots.size() != d.shares.size()) throw std::invalid_argument("one share a bin is needed");
     Bytes bytes;
     for (std::size_t i = 0; i < tree.roots.size(); ++i) append(bytes, AcdfBin{tree.roots[i], d.shares[i]});
     return bytes;
 }
+
+} // namespace
 
 Bytes metadata_payload(const Metadata& metadata) {
     Bytes bytes;
@@ -74,6 +81,8 @@ Bytes metadata_payload(const Metadata& metadata) {
     for (const auto& [key, value] : metadata) text(key), text(value);
     return bytes;
 }
+
+namespace {
 
 std::uint32_t crc(const std::uint8_t* data, std::size_t size, std::uint32_t seed = 0) {
     return static_cast<std::uint32_t>(crc32_z(seed, data, size));
@@ -104,44 +113,16 @@ void compress_payload(Payload& payload, AcdfChunk& chunk) {
 std::size_t rounded(std::size_t offset) { return (offset + ACDF_ALIGNMENT - 1) / ACDF_ALIGNMENT * ACDF_ALIGNMENT; }
 
 Bytes assemble(AcdfKind kind, std::vector<Payload> payloads, AcdfCodec codec) {
-    std::vector<AcdfChunk> table;
-    std::size_t end = sizeof(AcdfHeader) + payloads.size() * sizeof(AcdfChunk);
+    std::vector<ChunkView> chunks;
     for (Payload& payload : payloads) {
         AcdfChunk chunk = {};
-        chunk.type = payload.type;
-        chunk.flags = payload.flags;
         chunk.raw_length = payload.raw.size();
-        if (codec == ACDF_CODEC_ZLIB && payload.type != ACDF_CHUNK_METADATA) {
-            compress_payload(payload, chunk);
-        }
-        chunk.stored_length = payload.raw.size();
-        chunk.offset = rounded(end);
-        chunk.crc = crc(payload.raw.data(), payload.raw.size());
-        end = chunk.offset + chunk.stored_length;
-        table.push_back(chunk);
+        if (codec == ACDF_CODEC_ZLIB && payload.type != ACDF_CHUNK_METADATA) compress_payload(payload, chunk);
+        chunks.push_back(
+            {payload.type, payload.flags, chunk.codec, chunk.raw_length, payload.raw.data(), payload.raw.size()});
     }
-
-    AcdfHeader header = {};
-    const std::uint8_t magic[] = ACDF_MAGIC_BYTES;
-    std::memcpy(header.magic, magic, sizeof magic);
-    header.version_major = ACDF_VERSION_MAJOR;
-    header.version_minor = ACDF_VERSION_MINOR;
-    header.file_length = rounded(end);
-    header.kind = kind;
-    header.chunk_count = static_cast<std::uint32_t>(table.size());
-    const auto* table_bytes = reinterpret_cast<const std::uint8_t*>(table.data());
-    header.header_crc = crc(reinterpret_cast<const std::uint8_t*>(&header), offsetof(AcdfHeader, header_crc));
-    header.header_crc = crc(table_bytes, table.size() * sizeof(AcdfChunk), header.header_crc);
-
-    Bytes file;
-    file.reserve(header.file_length);
-    append(file, header);
-    for (const AcdfChunk& chunk : table) append(file, chunk);
-    for (std::size_t i = 0; i < table.size(); ++i) {
-        file.resize(table[i].offset, 0);
-        file.insert(file.end(), payloads[i].raw.begin(), payloads[i].raw.end());
-    }
-    file.resize(header.file_length, 0);
+    Bytes file(assembled_bytes(chunks.data(), chunks.size()));
+    assemble(kind, chunks.data(), chunks.size(), file.data());
     return file;
 }
 
@@ -161,6 +142,43 @@ Bytes store_chunks(std::vector<Payload> trees, const Description& description, A
 }
 
 } // namespace
+
+std::size_t assembled_bytes(const ChunkView* chunks, std::size_t count) {
+    std::size_t end = sizeof(AcdfHeader) + count * sizeof(AcdfChunk);
+    for (std::size_t i = 0; i < count; ++i) end = rounded(end) + chunks[i].size;
+    return rounded(end);
+}
+
+void assemble(AcdfKind kind, const ChunkView* chunks, std::size_t count, std::uint8_t* file) {
+    AcdfHeader header = {};
+    const std::uint8_t magic[] = ACDF_MAGIC_BYTES;
+    std::memcpy(header.magic, magic, sizeof magic);
+    header.version_major = ACDF_VERSION_MAJOR;
+    header.version_minor = ACDF_VERSION_MINOR;
+    header.file_length = assembled_bytes(chunks, count);
+    header.kind = kind;
+    header.chunk_count = static_cast<std::uint32_t>(count);
+    const std::size_t table = sizeof header, table_bytes = count * sizeof(AcdfChunk);
+    std::size_t end = table + table_bytes;
+    for (std::size_t i = 0; i < count; ++i) {
+        AcdfChunk chunk = {};
+        chunk.type = chunks[i].type;
+        chunk.flags = chunks[i].flags;
+        chunk.codec = chunks[i].codec;
+        chunk.raw_length = chunks[i].raw_length;
+        chunk.stored_length = chunks[i].size;
+        chunk.offset = rounded(end);
+        chunk.crc = crc(chunks[i].data, chunks[i].size);
+        std::memcpy(file + table + i * sizeof chunk, &chunk, sizeof chunk);
+        std::memset(file + end, 0, chunk.offset - end);
+        if (chunks[i].size > 0) std::memcpy(file + chunk.offset, chunks[i].data, chunks[i].size);
+        end = chunk.offset + chunks[i].size;
+    }
+    std::memset(file + end, 0, rounded(end) - end);
+    header.header_crc = crc(reinterpret_cast<const std::uint8_t*>(&header), offsetof(AcdfHeader, header_crc));
+    header.header_crc = crc(file + table, table_bytes, header.header_crc);
+    std::memcpy(file, &header, sizeof header);
+}
 
 Description environment_description(std::uint32_t columns, std::uint32_t rows,
                                     AcdfParameterization parameterization) {

@@ -93,6 +93,22 @@ std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& desc
 /// The same of a tree of halvings.
 std::vector<std::uint8_t> store(const Halvings& tree, const Description& description,
                                 AcdfCodec codec = ACDF_CODEC_NONE);
+/// What chunks DESC and META hold.
+std::vector<std::uint8_t> description_payload(const Description& description);
+std::vector<std::uint8_t> metadata_payload(const Metadata& metadata);
+
+/// A chunk as it is stored.
+struct ChunkView {
+    std::uint32_t type, flags, codec;
+    std::uint64_t raw_length;
+    const std::uint8_t* data;
+    std::size_t size;
+};
+
+/// Bytes of a file of these chunks, and the file itself, in memory of so many bytes.
+std::size_t assembled_bytes(const ChunkView* chunks, std::size_t count);
+void assemble(AcdfKind kind, const ChunkView* chunks, std::size_t count, std::uint8_t* file);
+
 /// How many bytes chunk HALV may have in an uncompressed file of `file_bytes`; 0: none fits.
 std::uint64_t halvings_room(const Description& description, std::uint64_t file_bytes);
 

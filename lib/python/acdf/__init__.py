@@ -16,13 +16,14 @@
 from ._acdf import __version__, format_version
 from ._errors import BuildError, FileError
 from ._renderers import Renderer, renderers
-from .build import build_brdf, build_environment, build_local, build_table
+from .build import EnvironmentRebuilder, build_brdf, build_environment, build_local, build_table
 from .files import Brdf, Environment, File, LocalEnvironment, Samples, Table, open
 
 __all__ = [
     "Brdf",
     "BuildError",
     "Environment",
+    "EnvironmentRebuilder",
     "File",
     "FileError",
     "LocalEnvironment",

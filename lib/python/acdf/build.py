@@ -101,6 +101,56 @@ def build_environment(
     return open(_acdf.build_environment(image, _options({k: v for k, v in locals().items() if k != "image"})))
 
 
+class EnvironmentRebuilder:
+    """Environments of a map that changes: made once for a size, rebuilt for each frame.
+
+    width, height: of the map, which is lat-long or octahedral.
+    quality: "fast" rebuilds in memory that is taken once; "best" makes the files of build_environment, in its time.
+    Other options are those of build_environment. An object serves one call at a time.
+
+    >>> import acdf, numpy as np
+    >>> sky = acdf.EnvironmentRebuilder(64, 32, budget="2KiB")
+    >>> image = np.ones((32, 64, 3), np.float32)
+    >>> frame = sky.rebuild(image)
+    >>> image[8, 20] = 500
+    >>> frame = sky.update(image, (20, 8, 1, 1))
+    >>> frame.size <= 2048, sky.relative_variance < 0.01
+    (True, True)
+    """
+
+    def __init__(
+        self,
+        width: int,
+        height: int,
+        *,
+        quality: str = "fast",
+        budget: Optional[Size] = None,
+        cells: Optional[int] = None,
+        projection: str = "latlong",
+        filter: Optional[str] = None,
+        wrap: Optional[str] = None,
+        channel: Optional[str] = None,
+        bad_texels: str = "zero",
+        uniform_if_black: bool = False,
+        source_name: str = "",
+    ) -> None:
+        given = {k: v for k, v in locals().items() if k not in ("self", "width", "height")}
+        self._made = _acdf.Rebuilder(width, height, _options(given))
+
+    def rebuild(self, image: Any, *, threads: int = 0) -> Environment:
+        """The environment of a frame. image: as build_environment takes it, of the size that this was made for."""
+        return open(self._made.rebuild(image, None, threads))
+
+    def update(self, image: Any, region: Sequence[int], *, threads: int = 0) -> Environment:
+        """The same where only the pixels of a region (x, y, width, height) have changed since the last call."""
+        return open(self._made.rebuild(image, tuple(region), threads))
+
+    @property
+    def relative_variance(self) -> float:
+        """Of one sample of the last frame."""
+        return float(self._made.relative_variance())
+
+
 def build_local(
     image: Any,
     *,

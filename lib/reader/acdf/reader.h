@@ -75,7 +75,8 @@ struct LoadOptions {
     /// more is allocated, and the file's own trees are walked.
     bool tables = true;
     /// Where the memory comes from that an open file keeps; by default the C library. It must stay usable until the
-    /// file is gone. What is needed for a moment, while bytes are checked, is the C library's.
+    /// file is gone. What is needed for a moment, while bytes are checked, is the C library's, but for the nodes of
+    /// a tree of halvings.
     AcdfAllocator allocator = {};
 };
 

@@ -263,22 +263,26 @@ void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
 }
 
 // An environment by halvings.
-void check_halved_environment(const Payloads& payloads, Report& report, Parts& parts) {
+void check_halved_environment(const Payloads& payloads, const AcdfAllocator& allocator, Report& report,
+                              Parts& parts) {
     const Payload& halvings = payloads.of[chunk_halvings];
     if (payloads.of[chunk_bins].data || payloads.of[chunk_tree].data)
         report.add(6035, halvings.at(0), "%s is there, too", payloads.of[chunk_tree].data ? "TREE" : "BINS");
     if (parts.description->fit != ACDF_FIT_VARIANCE)
         report.add(6035, halvings.at(0), "with fit %u", parts.description->fit);
-    if (!report.stopped()) check_halvings(halvings, report, parts);
+    if (!report.stopped()) check_halvings(halvings, report, allocator, parts);
     if (!report.stopped())
         check_environment(payloads.of[chunk_description], payloads.of[chunk_bins], report, parts);
 }
 
 } // namespace
 
+Parts::~Parts() { give_block(allocator, halvings_block); }
+
 Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink, void* context, Parts& parts,
               const AcdfAllocator& allocator) noexcept {
     Report report(sink, context);
+    parts.allocator = allocator;
     if (!check_header(bytes, size, report) || report.stopped()) return report.verdict();
     const AcdfHeader& header = *reinterpret_cast<const AcdfHeader*>(bytes);
     ChunkTable table = {};
@@ -295,7 +299,7 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_metadata(payloads.of[chunk_metadata], report, parts);
     if (!parts.description || report.stopped()) return report.verdict();
     if (payloads.of[chunk_halvings].data && belongs(chunk_halvings, header.kind))
-        check_halved_environment(payloads, report, parts);
+        check_halved_environment(payloads, allocator, report, parts);
 #ifdef ACDF_ENVIRONMENT_ONLY
     else report.add(5002, description.at(offsetof(AcdfDescription, fit)));
 #else

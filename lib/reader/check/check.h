@@ -12,7 +12,6 @@
 #include <acdf/portals.h>
 #endif
 
-#include <cstdlib>
 #include <cstring>
 #include <type_traits>
 
@@ -76,7 +75,7 @@ struct Parts {
     Parts() = default;
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
-    ~Parts() { std::free(halvings); }
+    ~Parts();
 
     const AcdfDescription* description = nullptr;
     const AcdfAxis* axes = nullptr; ///< description->axis_count
@@ -86,7 +85,9 @@ struct Parts {
     const AcdfPartner* partner = nullptr;   ///< null where the file is to be used alone
     const std::uint8_t* metadata = nullptr; ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
-    AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV, of the C library
+    AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV
+    AcdfBlock halvings_block = {};   ///< that holds them, of `allocator`
+    AcdfAllocator allocator = {};
     std::uint32_t halving_count = 0;
     AcdfBlock inflated = {}; ///< of the inflated chunks, from take_block; the caller gives it back
 

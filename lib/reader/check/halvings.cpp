@@ -1,7 +1,6 @@
 // Chunk HALV: its bits become flat nodes in the pass that checks them.
 #include "check/checker.h"
-
-#include <cstdlib>
+#include "memory.h"
 
 namespace acdf {
 
@@ -14,15 +13,19 @@ using ull = unsigned long long;
 // The open ends of a tree are at most one a level of each axis, and one more.
 constexpr u32 most_open_nodes = 31 * ACDF_MAX_AXES + 1;
 
-// Bits, the lowest of each byte first.
+// Bits of whole words, the lowest of each byte first.
 class Bits {
 public:
     Bits(const Payload& payload, u64 begin, u64 end) : payload_(payload), at_(begin * 8), end_(end * 8) {}
 
     bool has(u64 count) const { return end_ - at_ >= count; }
+    // Fewer than 32, which are there.
     u32 take(u32 count) {
-        u32 value = 0;
-        for (u32 i = 0; i < count; ++i, ++at_) value |= (payload_.data[at_ / 8] >> at_ % 8 & 1u) << i;
+        const u64 word = at_ / 32;
+        u64 held = load_u32(payload_.data + 4 * word);
+        if (at_ % 32 + count > 32) held |= u64{load_u32(payload_.data + 4 * word + 4)} << 32;
+        const u32 value = static_cast<u32>(held >> at_ % 32) & ((u32{1} << count) - 1);
+        at_ += count;
         return value;
     }
     u64 place() const { return payload_.at(at_ / 8); }
@@ -34,6 +37,8 @@ private:
 
 u64 words_for(u64 bits) { return (bits + 31) / 32; }
 
+// `kAxes`: the most that are sampled.
+template <u32 kAxes>
 class HalvingsChecker {
 public:
     HalvingsChecker(const Payload& payload, Report& report, const Parts& parts)
@@ -83,7 +88,7 @@ public:
 
 private:
     struct Open {
-        AcdfSpan steps[ACDF_MAX_AXES], box[ACDF_MAX_AXES];
+        AcdfSpan steps[kAxes], box[kAxes];
         u32 parent; // ACDF_LEAF: the root
         bool upper, dark;
     };
@@ -148,28 +153,41 @@ private:
     const AcdfHalvingsHeader& header_;
     Report& report_;
     u32 axes_ = 0, axis_bits_ = 0, made_ = 0, open_count_ = 0;
-    u32 resolution_[ACDF_MAX_AXES] = {};
+    u32 resolution_[kAxes] = {};
     u32 share_[1u << ACDF_MOST_CODE_BITS];
     Open open_[most_open_nodes];
 };
 
 } // namespace
 
-void check_halvings(const Payload& payload, Report& report, Parts& parts) noexcept {
+namespace {
+
+template <u32 kAxes>
+void make_halvings(const Payload& payload, Report& report, const AcdfAllocator& allocator, Parts& parts) {
+    HalvingsChecker<kAxes> checker(payload, report, parts);
+    if (!checker.header_is_right()) return;
+    const u32 count = reinterpret_cast<const AcdfHalvingsHeader*>(payload.data)->halving_count;
+    const std::size_t bytes = (count + std::size_t{1}) * sizeof(AcdfHalving);
+    parts.halvings_block = take_block(allocator, bytes);
+    if (!parts.halvings_block.data)
+        return report.add(1003, payload.at(0), "%llu bytes for nodes", static_cast<ull>(bytes));
+    parts.halvings = static_cast<AcdfHalving*>(parts.halvings_block.data);
+    parts.halving_count = count;
+    checker.make_nodes(parts.halvings);
+}
+
+} // namespace
+
+void check_halvings(const Payload& payload, Report& report, const AcdfAllocator& allocator, Parts& parts) noexcept {
     if (payload.size < sizeof(AcdfHalvingsHeader)) {
         report.add(6030, payload.at(0), "%llu bytes", static_cast<ull>(payload.size));
         return;
     }
-    HalvingsChecker checker(payload, report, parts);
-    if (!checker.header_is_right()) return;
-    const u32 count = reinterpret_cast<const AcdfHalvingsHeader*>(payload.data)->halving_count;
-    parts.halvings = static_cast<AcdfHalving*>(std::malloc((count + std::size_t{1}) * sizeof(AcdfHalving)));
-    if (!parts.halvings) {
-        report.add(1003, payload.at(0), "%llu bytes for nodes", ull{count} * sizeof(AcdfHalving));
-        return;
-    }
-    parts.halving_count = count;
-    checker.make_nodes(parts.halvings);
+    u32 sampled = 0;
+    for (u32 axis = 0; axis < parts.description->axis_count; ++axis)
+        sampled += parts.axes[axis].role == ACDF_AXIS_SAMPLED;
+    if (sampled <= 2) make_halvings<2>(payload, report, allocator, parts);
+    else make_halvings<ACDF_MAX_AXES>(payload, report, allocator, parts);
 }
 
 } // namespace acdf

@@ -28,6 +28,28 @@ def acdf_program(*arguments):
 
 
 class Built(unittest.TestCase):
+    def test_rebuilt_environments(self):
+        image, other = sky_image(), sky_image()
+        other[3:7, 10:20] = 7
+        u = np.random.default_rng(5).random((2000, 2))
+
+        def same(a, b):
+            return all(np.array_equal(x, y) for x, y in zip(a.sample(u), b.sample(u)))
+
+        for quality in ("fast", "best"):
+            sky = acdf.EnvironmentRebuilder(64, 32, budget="2KiB", quality=quality, filter="bilinear")
+            first = sky.rebuild(image, threads=1)
+            changed = sky.update(other, (10, 3, 10, 4))
+            self.assertTrue(same(changed, sky.rebuild(other)))
+            self.assertFalse(same(changed, first))
+            self.assertLessEqual(changed.size, 2048)
+            self.assertLess(sky.relative_variance, 0.1)
+        self.assertTrue(same(changed, acdf.build_environment(other, budget="2KiB", filter="bilinear")))
+        with self.assertRaises(ValueError):
+            sky.rebuild(image[:16])
+        with self.assertRaises(ValueError):
+            acdf.EnvironmentRebuilder(0, 32, budget="2KiB")
+
     def test_environments_are_those_of_the_program(self):
         image = sky_image()
         sky = acdf.build_environment(image, cells=300, channel="rgb")

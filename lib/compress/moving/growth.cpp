@@ -1,0 +1,241 @@
+#include "compress/moving/growth.h"
+
+#include "compress/halvings/code_bits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace acdf::compress {
+namespace {
+
+constexpr float kAhead = 1.0f / 3.0f;  // what the gain of two halvings counts
+constexpr float kAlike = 0.5f;         // a bound, of the largest gain that is left
+constexpr std::size_t kAtOnce = 32;    // so few that are left are halved in one round
+constexpr std::size_t kOfThread = 128; // nodes that are worth a thread's while
+constexpr double kPredictedFrom = 0.7; // of the leaves of the smallest tree: those of larger ones are foreseen
+
+/// The better axis of a node, and what it gains: costs of the halves and quarters that halving it may make.
+class Look {
+public:
+    Look(const MovingSums& sums, MovingNode& node) : sums_(sums), node_(node) {}
+
+    void run() {
+        const MovingBox box = node_.box;
+        const bool inside = 4 * box.rows < sums_.complete_rows() && 4 * box.columns < sums_.complete_columns();
+        inside ? from_tables() : at_the_end();
+    }
+
+private:
+    static float quarters(float a, float b, float c, float d, float e) {
+        return std::min(a, std::min(b + c, d + e));
+    }
+
+    void consider(std::int8_t axis, float a, float b, float least_a, float least_b) {
+        const float gain = std::max(node_.cost - (a + b), kAhead * (node_.cost - (least_a + least_b)));
+        if (!(gain > node_.gain)) return;
+        node_.gain = gain;
+        node_.axis = axis;
+    }
+
+    /// All boxes are in the tables.
+    void from_tables() {
+        const std::uint32_t r = node_.box.rows, c = node_.box.columns;
+        const MovingAxis &rows = sums_.row_axis(), &columns = sums_.column_axis();
+        const float* own = sums_.table(r);
+        const float* half[2] = {sums_.table(2 * r), sums_.table(2 * r + 1)};
+        float cost[16], scale[16];
+        const float row = rows.root(r), column = columns.root(c);
+        for (std::uint32_t k = 0; k < 2; ++k) {
+            cost[k] = half[k][c];
+            scale[k] = rows.root(2 * r + k) * column;
+            cost[2 + k] = own[2 * c + k];
+            scale[2 + k] = columns.root(2 * c + k) * row;
+        }
+        for (std::uint32_t k = 0; k < 4; ++k) {
+            cost[4 + k] = sums_.table(4 * r + k)[c];
+            scale[4 + k] = rows.root(4 * r + k) * column;
+            cost[8 + k] = own[4 * c + k];
+            scale[8 + k] = columns.root(4 * c + k) * row;
+            cost[12 + k] = half[k / 2][2 * c + k % 2];
+            scale[12 + k] = rows.root(2 * r + k / 2) * columns.root(2 * c + k % 2);
+        }
+        for (float& of : cost) of = std::sqrt(of);
+        for (std::size_t k = 0; k < 16; ++k) cost[k] *= scale[k];
+        consider(0, cost[0], cost[1], quarters(cost[0], cost[4], cost[5], cost[12], cost[13]),
+                 quarters(cost[1], cost[6], cost[7], cost[14], cost[15]));
+        consider(1, cost[2], cost[3], quarters(cost[2], cost[8], cost[9], cost[12], cost[14]),
+                 quarters(cost[3], cost[10], cost[11], cost[13], cost[15]));
+    }
+
+    bool can_halve(MovingBox box, int axis) const {
+        return axis == 0 ? sums_.row_axis().can_halve(box.rows) : sums_.column_axis().can_halve(box.columns);
+    }
+    static MovingBox half(MovingBox box, int axis, std::uint32_t upper) {
+        (axis == 0 ? box.rows : box.columns) *= 2;
+        (axis == 0 ? box.rows : box.columns) += upper;
+        return box;
+    }
+    /// The least that a box costs once it is halved at most once more.
+    float least_cost(MovingBox box, float as_leaf) const {
+        float least = as_leaf;
+        for (int axis = 0; axis < 2; ++axis)
+            if (can_halve(box, axis))
+                least = std::min(least, sums_.cost(half(box, axis, 0)) + sums_.cost(half(box, axis, 1)));
+        return least;
+    }
+    void at_the_end() {
+        for (int axis = 0; axis < 2; ++axis) {
+            if (!can_halve(node_.box, axis)) continue;
+            const MovingBox lower = half(node_.box, axis, 0), upper = half(node_.box, axis, 1);
+            const float a = sums_.cost(lower), b = sums_.cost(upper);
+            consider(static_cast<std::int8_t>(axis), a, b, least_cost(lower, a), least_cost(upper, b));
+        }
+    }
+
+    const MovingSums& sums_;
+    MovingNode& node_;
+};
+
+/// Larger gains first, of equal ones the lower number.
+std::uint64_t key_of(float gain, std::uint32_t node) {
+    std::uint32_t bits; // of positive floats they are in order
+    std::memcpy(&bits, &gain, sizeof bits);
+    return std::uint64_t{bits} << 32 | (0xFFFFFFFFu - node);
+}
+float gain_of(std::uint64_t key) {
+    const auto bits = static_cast<std::uint32_t>(key >> 32);
+    float gain;
+    std::memcpy(&gain, &bits, sizeof gain);
+    return gain;
+}
+std::uint32_t node_of(std::uint64_t key) { return 0xFFFFFFFFu - static_cast<std::uint32_t>(key); }
+
+} // namespace
+
+MovingGrowth::MovingGrowth(std::vector<MovingSize> sizes) : sizes_(std::move(sizes)), size_(sizes_.back()) {
+    const std::size_t most = sizes_.back().leaves;
+    nodes_.reserve(2 * most);
+    for (auto* keys : {&next_, &later_, &chosen_, &ranked_}) keys->reserve(most + 1);
+    totals_.reserve(most);
+}
+
+void MovingGrowth::run(const MovingSums& sums, const Loop& loop, const std::function<void(double)>& round) {
+    begin(sums);
+    while (leaves() < size_.leaves && choose() > 0) {
+        halve(sums, loop);
+        totals_.push_back({leaves(), total_});
+        predict(sums);
+        if (round) round(std::min(1.0, double(leaves()) / double(size_.leaves)));
+    }
+}
+
+void MovingGrowth::begin(const MovingSums& sums) {
+    nodes_.clear();
+    next_.clear();
+    later_.clear();
+    least_ = 0;
+    totals_.clear();
+    size_ = sizes_.back();
+    predicted_ = sizes_.size() == 1;
+    nodes_.emplace_back();
+    nodes_[0].cost = sums.cost({});
+    total_ = double{nodes_[0].cost};
+    if (variance(sums) < kEven) return;
+    Look(sums, nodes_[0]).run();
+    if (nodes_[0].axis >= 0) later_.push_back(key_of(nodes_[0].gain, 0));
+}
+
+/// The key of which there are `count` that are not smaller.
+std::uint64_t MovingGrowth::rank(const std::vector<std::uint64_t>& of, std::size_t count) {
+    ranked_ = of;
+    const auto at = ranked_.begin() + static_cast<std::ptrdiff_t>(count - 1);
+    std::nth_element(ranked_.begin(), at, ranked_.end(), [](std::uint64_t a, std::uint64_t b) { return a > b; });
+    return *at;
+}
+
+/// Moves those that are not below `least` to the end of `to`.
+void MovingGrowth::move(std::vector<std::uint64_t>& from, std::uint64_t least, std::vector<std::uint64_t>& to) {
+    std::size_t kept = 0;
+    for (const std::uint64_t key : from)
+        if (key >= least) to.push_back(key);
+        else from[kept++] = key;
+    from.resize(kept);
+}
+
+/// Takes what is halved next; how many that are.
+std::size_t MovingGrowth::choose() {
+    const std::size_t left = (predicted_ ? size_ : sizes_.front()).leaves - leaves();
+    const std::size_t most = left > kAtOnce ? left / 2 : left;
+    chosen_.clear();
+    if (next_.empty() && !later_.empty()) {
+        if (predicted_ && later_.size() > 2 * left) { // the others will not be halved
+            const std::uint64_t least = rank(later_, left);
+            later_.erase(
+                std::remove_if(later_.begin(), later_.end(), [&](std::uint64_t key) { return key < least; }),
+                later_.end());
+        }
+        least_ = left > kAtOnce ? key_of(kAlike * gain_of(*std::max_element(later_.begin(), later_.end())), 0) : 0;
+        const auto many =
+            std::count_if(later_.begin(), later_.end(), [&](std::uint64_t key) { return key >= least_; });
+        if (static_cast<std::size_t>(many) > most) least_ = rank(later_, most);
+        move(later_, least_, next_);
+    }
+    if (next_.size() > most) move(next_, rank(next_, most), chosen_);
+    else chosen_.swap(next_);
+    return chosen_.size();
+}
+
+void MovingGrowth::halve(const MovingSums& sums, const Loop& loop) {
+    const std::size_t before = nodes_.size();
+    nodes_.resize(before + 2 * chosen_.size());
+    loop.run(chosen_.size(), kOfThread, [&](std::size_t first, std::size_t last, std::size_t) {
+        for (std::size_t i = first; i < last; ++i) {
+            MovingNode& node = nodes_[node_of(chosen_[i])];
+            node.lower = static_cast<std::uint32_t>(before + 2 * i);
+            for (std::uint32_t upper = 0; upper < 2; ++upper) {
+                MovingNode& half = nodes_[node.lower + upper];
+                half = {};
+                half.box = node.box;
+                std::uint32_t& range = node.axis == 0 ? half.box.rows : half.box.columns;
+                range = 2 * range + upper;
+                half.cost = sums.cost(half.box);
+                Look(sums, half).run();
+            }
+        }
+    });
+    for (const std::uint64_t key : chosen_) {
+        const MovingNode& node = nodes_[node_of(key)];
+        total_ += double{nodes_[node.lower].cost} + double{nodes_[node.lower + 1].cost} - double{node.cost};
+    }
+    for (std::size_t i = before; i < nodes_.size(); ++i) {
+        if (nodes_[i].axis < 0) continue;
+        const std::uint64_t key = key_of(nodes_[i].gain, static_cast<std::uint32_t>(i));
+        (key >= least_ ? next_ : later_).push_back(key);
+    }
+}
+
+/// Once there are nearly as many leaves as the most bits allow, it shows how the variance falls with their number.
+void MovingGrowth::predict(const MovingSums& sums) {
+    if (predicted_ || double(leaves()) < kPredictedFrom * double(sizes_.front().leaves)) return;
+    predicted_ = true;
+    auto earlier = totals_.end();
+    while (earlier != totals_.begin() && 2 * (earlier - 1)->first > leaves()) --earlier;
+    const double now = std::max(variance(sums), 1e-12);
+    double slope = 0.0;
+    if (earlier != totals_.begin()) {
+        --earlier;
+        slope = std::log(std::max(variance_of(earlier->second, sums) / now, 1.0)) /
+                std::log(double(leaves()) / double(earlier->first));
+    }
+    double best = std::numeric_limits<double>::infinity();
+    for (const MovingSize& size : sizes_) {
+        const double grown = std::max(1.0, double(size.leaves) / double(leaves()));
+        const double loss = now * std::pow(grown, -slope) + predicted_loss(size.leaves, size.code_bits);
+        if (loss >= best) continue;
+        best = loss;
+        size_ = size;
+    }
+}
+
+} // namespace acdf::compress
