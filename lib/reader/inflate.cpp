@@ -1,5 +1,7 @@
 #include "inflate.h"
 
+#include <cstddef>
+
 #if ACDF_ZLIB
 #include <zlib.h>
 #endif
@@ -13,7 +15,7 @@ using u64 = std::uint64_t;
 #if ACDF_ZLIB
 
 u32 crc32_of(u32 seed, const u8* bytes, u64 size) noexcept {
-    return static_cast<u32>(crc32_z(seed, bytes, static_cast<z_size_t>(size)));
+    return static_cast<u32>(crc32_z(seed, bytes, static_cast<std::size_t>(size)));
 }
 
 const char* inflate_within(const u8* in, u64 in_size, u8* out, u64& out_size) noexcept {

@@ -7,6 +7,7 @@
 #include "measure/sequences.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <nlohmann/json.hpp>
 

@@ -9,6 +9,8 @@
 #include "measure/samplers/tiling.h"
 #include "measure/surface_frame.h"
 
+#include <acdf/moved.h>
+
 #include <algorithm>
 #include <stdexcept>
 

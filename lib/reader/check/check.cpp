@@ -2,6 +2,7 @@
 #include "check/chunk_table.h"
 #include "check/rule_codes.h"
 #include "inflate.h"
+#include "memory.h"
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include "check/kinds.h"
 #include "check/signatures.h"
