@@ -1,6 +1,7 @@
 #include "golden_samples.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cstdio>
 #include <stdexcept>

@@ -6,6 +6,7 @@
 #include "write_file.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,6 @@
-# Installs the reader and the builder, components `reader` and, which needs the first, `builder`: headers, a static library
-# each, one CMake package and a pkg-config file each. Both as shared libraries: `runtime`, and what links to them, `shared`.
+# Installs the reader, the rooms beside it and the builder, components `reader`, `batch`, `product`, `shader` and `builder`: headers
+# and a static library each, one CMake package and a pkg-config file each. All need the first, `product` and `builder` need
+# `batch`. As shared libraries, one of the reader with the rooms and one of the builder: `runtime`, and what links to them, `shared`.
 # The program: `tools`, its pages and completions `manual`. The Python package: `python`.
 # Everything is relocatable: the prefix may be moved or staged after installation.
 include(GNUInstallDirs)
@@ -7,82 +8,20 @@ include(CMakePackageConfigHelpers)
 
 set(ACDF_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/acdf)
 
+# The reader, and the rooms beside it, each with a component, an export set and a pkg-config file of its own.
 install(TARGETS acdf_reader EXPORT acdfTargets COMPONENT reader
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(FILES
-    ${PROJECT_SOURCE_DIR}/format/acdf/layout.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/acdf.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/allocator.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/blend.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_about.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_half.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_pair.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_tables.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_view.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cells.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/partner.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut_sample.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut_wave.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect_c.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect_words.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/fast.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/fast_cut.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/fast_rows.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/halvings.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/linked.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/lobe.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_corners.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_fast.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_fast_point.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/bright_tiles.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_parts.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_pdf.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_position.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_point.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_tables.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/method.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/moved.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/normals.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/octahedral.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/part_queue.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/part_rating.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/pieces.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/visibility.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/portals.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_c.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_cut.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_groups.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_point.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/random.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/row_heights.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_brdf.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_grids.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_point.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_square.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_tables.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_tiles.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_tree.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_walk.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/short_curves.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sphere.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/squares.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table_entries.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tile_blocks.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tile_tables.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tree.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/views.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/wavefront.h
-    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/acdf COMPONENT reader)
+install(FILES ${PROJECT_SOURCE_DIR}/format/acdf/layout.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/acdf COMPONENT reader)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/reader/acdf DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT reader
+    FILES_MATCHING PATTERN *.h)
+foreach(room IN LISTS ACDF_ROOMS)
+    install(TARGETS acdf_${room} EXPORT acdf_${room}_targets COMPONENT ${room}
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/${room}/acdf/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/acdf
+        COMPONENT ${room} FILES_MATCHING PATTERN *.h)
+    install(EXPORT acdf_${room}_targets FILE acdf_${room}.cmake NAMESPACE acdf:: DESTINATION ${ACDF_CMAKE_DIR}
+        COMPONENT ${room})
+endforeach()
 
 install(EXPORT acdfTargets NAMESPACE acdf:: DESTINATION ${ACDF_CMAKE_DIR} COMPONENT reader)
 if(TARGET acdf_builder)
@@ -109,8 +48,28 @@ install(FILES ${PROJECT_BINARY_DIR}/acdfConfig.cmake ${PROJECT_BINARY_DIR}/acdfC
 # From the folder of the .pc files up to the prefix.
 file(RELATIVE_PATH ACDF_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 string(REGEX REPLACE "/$" "" ACDF_PC_PREFIX "${ACDF_PC_PREFIX}")
+set(ACDF_PC_ZLIB "")
+if(ACDF_ZLIB)
+    set(ACDF_PC_ZLIB zlib)
+endif()
 configure_file(${PROJECT_SOURCE_DIR}/lib/reader/acdf.pc.in ${PROJECT_BINARY_DIR}/acdf.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/acdf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT reader)
+set(ACDF_PC_SUMMARY_batch "many samples at once")
+set(ACDF_PC_SUMMARY_product "light, cosine and BRDF at once")
+set(ACDF_PC_SUMMARY_shader "tables for shaders")
+set(ACDF_PC_NEEDS_batch acdf)
+set(ACDF_PC_NEEDS_product acdf)
+if(ACDF_BUILD_BATCH)
+    set(ACDF_PC_NEEDS_product acdf-batch)
+endif()
+set(ACDF_PC_NEEDS_shader acdf)
+foreach(room IN LISTS ACDF_ROOMS)
+    set(ACDF_PC_ROOM ${room})
+    set(ACDF_PC_SUMMARY ${ACDF_PC_SUMMARY_${room}})
+    set(ACDF_PC_NEEDS ${ACDF_PC_NEEDS_${room}})
+    configure_file(${PROJECT_SOURCE_DIR}/lib/acdf-room.pc.in ${PROJECT_BINARY_DIR}/acdf-${room}.pc @ONLY)
+    install(FILES ${PROJECT_BINARY_DIR}/acdf-${room}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT ${room})
+endforeach()
 if(TARGET acdf_builder)
     configure_file(${PROJECT_SOURCE_DIR}/lib/build/acdf-builder.pc.in ${PROJECT_BINARY_DIR}/acdf-builder.pc @ONLY)
     install(FILES ${PROJECT_BINARY_DIR}/acdf-builder.pc

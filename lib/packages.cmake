@@ -61,7 +61,7 @@ if(ACDF_BUILD_SHARED)
     acdf_debian_package(development libacdf-dev "libacdf0 ${same}, zlib1g-dev, libtbb-dev"
         "importance sampling of measured light: headers and libraries"
         "To sample from .acdf files in a renderer (C, C++ and kernels), and to make\nthem in memory: static and shared libraries, for CMake and pkg-config."
-        reader builder shared)
+        reader ${ACDF_ROOMS} builder shared)
     set(CPACK_DEBIAN_LIBRARIES_PACKAGE_CONTROL_EXTRA
         ${PROJECT_BINARY_DIR}/debian/triggers ${PROJECT_BINARY_DIR}/debian/shlibs)
     file(WRITE ${PROJECT_BINARY_DIR}/debian/triggers "activate-noawait ldconfig\n")

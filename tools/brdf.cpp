@@ -160,7 +160,7 @@ void BrdfConversion::add_fit_options(CLI::App& command) {
 
 void BrdfConversion::add_size_options(CLI::App& command) {
     add_goal(command, brdf_.goal.cells, budget_, brdf_.goal.variance,
-             {"Cells that all views share; without sharing: of each, on average", "N", "SIZE [64KiB]",
+             {"Cells that all views share; without sharing: of each, on average", "N", "SIZE [128KiB]",
               ", about, as mean over views", 1, ACDF_MAX_TILES});
     add_max_weight(
         command, brdf_.max_weight,

@@ -136,6 +136,8 @@ void EnvConversion::check() {
     const AcdfFit fit = environment_.fit.fit;
     for (const OnlyFor& rule : only_for)
         if (given(rule.option) && !allows(rule, fit)) throw CLI::ValidationError(rule.option, rule.message);
+    environment_.goal.budget = builder::DefaultBudget::environment;
+    environment_.goal.kind = builder::Goal::Kind::budget;
     if (fit == ACDF_FIT_VARIANCE) read_goal(*command_, budget_, environment_.goal);
     else set_knots();
     use_renderers_partner();
@@ -262,7 +264,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         ->group("Fit");
     add_goal(
         command, environment_.goal.cells, budget_, environment_.goal.variance,
-        {"Cells in all: about 4 bytes each", "N [4096]", "SIZE",
+        {"Cells in all, instead of a size: about 4 bytes each", "N", "SIZE [64KiB]",
          ": 0.01 is a tenth of the mean as standard deviation of one sample. Files of up to 16 MiB are tried"});
     add_max_weight(command, fit.max_weight);
     command
@@ -327,9 +329,9 @@ void add_env(CLI::App& program, int& exit_code) {
          "The environment map: any image OpenImageIO reads, or the six faces of a cube (--faces). Several become a "
          "file each",
          help_footer("Prints the size and the exact relative variance of the stored density: n samples have "
-                     "that over n. The default is the least noise for 4096 cells (about 18 KiB).",
+                     "that over n. By default the file has the least noise in 64 KiB.",
                      "acdf env probe.exr\n"
-                     "acdf env probe.hdr -o probe.acdf --budget 64KiB\n"
+                     "acdf env probe.hdr -o probe.acdf --budget 16KiB\n"
                      "acdf env noon.exr dusk.exr -o skies/\n"
                      "acdf env probe.hdr -o probe.acdf --target-variance 0.01 --compress zlib\n"
                      "acdf env grace_probe.hdr --projection angular -o grace.acdf\n"

@@ -9,7 +9,7 @@
 #include "tools/cli/output.h"
 #include "tools/commands.h"
 
-#include <acdf/shader_tables.h>
+#include <acdf/shader/tables.h>
 
 #include <nlohmann/json.hpp>
 

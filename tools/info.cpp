@@ -2,6 +2,7 @@
 #include "build/accuracy/cells.h"
 #include "build/text/format_names.h"
 #include "build/text/partner.h"
+#include "measure/samplers/light_samplers.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
@@ -194,6 +195,7 @@ Json describe(const std::string& path, const File& file) {
     report["version"] = std::to_string(header.version_major) + "." + std::to_string(header.version_minor);
     report["bytes"] = file.size();
     report["table_bytes"] = file.table_bytes();
+    report["memory_bytes"] = measure::memory_of(file);
     report["bins"] = description.bin_count;
     report["cells"] = counts.cells;
     report["curves"] = counts.curves;
@@ -294,8 +296,11 @@ void print(const Json& report) {
     const std::string structure = report["curves"] == 0 ? "" : " in " + text_of(report["curves"]) + " curves";
     line("fit", text_of(report["fit"]) + "; stored: " + text_of(report["cells"]) + " cells" + structure + ", " +
                     text_of(report["bins"]) + (report["bins"] == 1 ? " bin" : " bins"));
-    if (const std::uint64_t tables = report["table_bytes"]; tables > 0)
-        line("in memory", to_readable_size(tables) + " of tables besides, made when it is opened");
+    const std::uint64_t tables = report["table_bytes"], memory = report["memory_bytes"];
+    if (memory > bytes)
+        line("in memory", to_readable_size(memory) + (tables > 0 ? ", of which " + to_readable_size(tables) +
+                                                                       " are tables made when it is opened"
+                                                                 : ""));
     if (report.contains("local")) line("normals", local_text(report["local"]));
     if (report.contains("partner")) line("partner", partner_line(report["partner"]));
     line("source", source_text(report["source"]));

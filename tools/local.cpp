@@ -71,9 +71,6 @@ private:
     bool no_sharing_ = false, visibility_ = false, volume_ = false;
 };
 
-/// The default budget of a file that stores visibility cells.
-constexpr std::uint64_t kVisibilityBytes = std::uint64_t{4} << 20;
-
 constexpr double kWorthwhile = 1.5; ///< gain below which a file without normals would do as well
 
 void LocalConversion::set_normals() {
@@ -125,6 +122,8 @@ void LocalConversion::check() {
     use_renderer(*command_, renderer_, input_, local_.target);
     scene_.check(*command_);
     set_normals();
+    local_.goal.budget = visibility_ ? builder::DefaultBudget::visibility : builder::DefaultBudget::local;
+    local_.goal.kind = builder::Goal::Kind::budget;
     read_goal(*command_, budget_, local_.goal);
     set_separate();
     if (renderer_ && !visibility_) for_partner_ = use_partner(*command_, renderer_->partner(local_), local_.mis);
@@ -143,7 +142,6 @@ void LocalConversion::check() {
     if (!scene_.given()) throw CLI::ValidationError("--visibility", "needs --scene MESH");
     for (const char* option : {"--no-sharing", "--cells", "--target-variance", "--max-weight"})
         if (given(option)) throw CLI::ValidationError("--visibility", std::string("goes without ") + option);
-    if (!given("--budget")) local_.goal = builder::Goal::of_budget(kVisibilityBytes);
 }
 
 std::vector<std::string*> LocalConversion::files() {

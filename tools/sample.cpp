@@ -12,7 +12,7 @@
 #include "tools/cli/view_option.h"
 #include "tools/commands.h"
 
-#include <acdf/wavefront.h>
+#include <acdf/batch/batch.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -89,7 +89,7 @@ void sample_local(const File& file, const SampleArguments& options, Output& outp
     if (point.what == ACDF_LOCAL_NOTHING)
         throw Failure(options.file +
                       ": no light reaches this normal, so there is nothing to sample; choose another");
-    const LocalWavefront view(file.local());
+    const LocalBatch view(file.local());
     write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
         view.sample(point, u, count, samples);
     });

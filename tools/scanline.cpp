@@ -146,7 +146,7 @@ Json to_json(const std::string& path, const Study& s) {
 
 void run(const ScanlineArguments& options) {
     const input::Probe probe = load_probe(options.probe, options.reading, options.quiet || options.json);
-    const builder::Target held = probe_target(options.probe, probe);
+    const builder::Target held = probe_texels(options.probe, probe);
     const compress::Target& target = builder::grid_of(held);
     const Study made = study(target, chosen_row(options.row, target));
     if (options.json) std::fputs(json_text(to_json(options.probe, made)).c_str(), stdout);

@@ -222,8 +222,8 @@ void add_axis_options(CLI::App& command, TableArguments& options) {
 
 void add_size_options(CLI::App& command, TableArguments& options) {
     add_goal(command, options.table.goal.cells, options.budget, options.table.goal.variance,
-             {"Cells a bin, on average: a bin that is harder gets more of them",
-              "N [4096 in all, at least 64 a bin]", "SIZE", ", as mean over the bins"});
+             {"Cells a bin, on average, instead of a size: a bin that is harder gets more of them", "N",
+              "SIZE [64KiB; of more than 256 bins 256 bytes a bin]", ", as mean over the bins"});
     add_max_weight(command, options.table.max_weight, ". In every bin");
 }
 
@@ -269,7 +269,7 @@ void add_table(CLI::App& program, int& exit_code) {
         "would not fit; the integral stays exact.",
         "acdf table histogram.npy -o histogram.acdf\n"
         "acdf table field.npy -o field.acdf --indexed 2 --names s,t,u,v --range u=-1:1 --range v=-1:1\n"
-        "acdf table volume.npy -o volume.acdf --budget 64KiB --json"));
+        "acdf table volume.npy -o volume.acdf --budget 256KiB --json"));
     command.callback([options, &exit_code] {
         options->output = output_names({options->array}, options->output, ".acdf")[0];
         run(*options);

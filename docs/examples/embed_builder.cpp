@@ -48,8 +48,9 @@ int main(int argc, char** argv) {
     pixels.width = std::uint32_t(width), pixels.height = std::uint32_t(height);
     pixels.channels = 4;
     acdf::builder::EnvironmentOptions options;
-    options.goal = acdf::builder::Goal::of_budget(64 << 10);
-    acdf::builder::Control control; // a user who grows impatient may cancel
+    options.goal = acdf::builder::Goal::of_budget(64 << 10); // as by default
+    options.target.filter = ACDF_FILTER_NEAREST;             // as lookup() has it
+    acdf::builder::Control control;                          // a user who grows impatient may cancel
     control.progress = [](double share, const char* what) { return share <= 1.0 && what != nullptr; };
 
     const auto start = std::chrono::steady_clock::now();

@@ -1,6 +1,7 @@
 // Light that is not infinitely far, at any point: samples directions from the light field of docs/table.md between
 // its cameras, with their exact density, and estimates the irradiance there: light_at_point light_field.acdf
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <algorithm>
 #include <cmath>

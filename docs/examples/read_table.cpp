@@ -1,6 +1,7 @@
 // Estimates the mean radiance that a camera of light_field.npy sees, from samples of the file that docs/table.md
 // makes of it: read_table light_field.acdf
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cmath>
 #include <cstdio>

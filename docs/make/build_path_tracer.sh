@@ -3,6 +3,8 @@
 set -euo pipefail
 build=$1 work=$2
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-cmake --install "$build" --prefix "$work/prefix" --component reader >/dev/null
+for component in reader batch product; do
+    cmake --install "$build" --prefix "$work/prefix" --component $component >/dev/null
+done
 cmake -S "$root/docs/examples/path_tracer" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
 cmake --build "$work/build" >/dev/null

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # method_tables.sh PROBES: tables of environment files (docs/appendix/accuracy-environment.md, performance-building.md), from the
 # probes in a folder, as Markdown on stdout.
-# ACDF names the program (default: build/release/tools/acdf). TABLES chooses some of: fits sizes options ratio building. The last
+# ACDF names the program (default: build/release/tools/acdf). TABLES chooses some of: fits sizes filters options ratio building. The last
 # needs oiiotool, for maps of other sizes.
 set -euo pipefail
 probes=${1:?usage: docs/make/method_tables.sh PROBES}
 build=$(dirname "${BASH_SOURCE[0]}")/../../build/release
 acdf=${ACDF:-$build/tools/acdf}
-tables=${TABLES:-fits sizes options ratio building}
+tables=${TABLES:-fits sizes filters options ratio building}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -46,6 +46,24 @@ sizes() {
     for probe in "${six[@]}"; do row "${probe%.*}" "$probes/$probe" --filter nearest; done
 }
 
+# What files of 64 KiB for either lookup have under either; "biased" where light has no density.
+filters() {
+    echo "| probe | nearest lookup: file for it | bilinear file | bilinear lookup: file for it | nearest file |"
+    echo "|---|---|---|---|---|"
+    for probe in "${six[@]}"; do
+        printf '| %s' "${probe%.*}"
+        for lookup in nearest bilinear; do
+            for made in "$lookup" "$([ $lookup = nearest ] && echo bilinear || echo nearest)"; do
+                "$acdf" env "$probes/$probe" --filter "$made" -o "$work/x.acdf" --force --quiet
+                { "$acdf" measure "$work/x.acdf" --against "$probes/$probe" --filter "$lookup" --quiet --json 2>/dev/null || :; } |
+                    jq -r 'if .relative_variance then .relative_variance else "biased" end' |
+                    awk '{ printf $1 == "biased" ? " | %s" : " | %.3g", $1 }'
+            done
+        done
+        printf ' |\n'
+    done
+}
+
 # One row for each option of `acdf env`: what it does to a file of one probe. Seconds are of the processor, over all
 # threads, the reading of the probe and the exact measurement included.
 options() {
@@ -76,7 +94,7 @@ options() {
 --cells 4096 --channel red
 --cells 4096 --channel green
 --cells 4096 --channel blue
---cells 4096 --filter bilinear
+--cells 4096 --filter nearest
 --cells 4096 --compress zlib
 --cells 4096 --threads 1
 --fit uniform

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# product_checks.sh BUILD DATA: checks acdf/product.h at 200 shading points for each of eight probes, in both shapes, and eleven BRDFs, and writes
+# product_checks.sh BUILD DATA: checks acdf/product/product.h at 200 shading points for each of eight probes, in both shapes, and eleven BRDFs, and writes
 # the table of docs/appendix/product-checks.md. BUILD: a release build with -DACDF_BUILD_BENCHMARKS=ON; DATA holds probes/ and brdfs/.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)

@@ -150,6 +150,7 @@ typedef struct AcdfBin {
     float share;   /* this bin's integral over `total` */
 } AcdfBin;
 
+#ifndef ACDF_ENVIRONMENT_ONLY
 /* Chunk TREE: curves, packed one after the other, each a whole number of 16-bit units (SPEC.md §5.4):
  *   uint16 header; [uint32 segments, as two uint16]; cumulative[n-1]; positions[n-1]; links[n] (if any);
  *   tilts[n] (if any); zero padding. Each array starts at the next multiple of its element's size. */
@@ -160,6 +161,7 @@ typedef struct AcdfBin {
 #define ACDF_CURVE_TILTED 0x0200u
 #define ACDF_CURVE_SEGMENTS_SHIFT 10 /* 1 to 63 segments; 0: the count follows */
 #define ACDF_CURVE_SHORT_SEGMENTS 63u
+#endif
 
 /* Chunk HALV: a tree of halvings (SPEC.md §5.12), instead of BINS and TREE. This, then two runs of bits, the lowest
  * of each byte first, each padded with zeros to a multiple of 32: the nodes in preorder, 0 for a leaf, else 1 and
@@ -173,6 +175,7 @@ typedef struct AcdfHalvingsHeader {
 #define ACDF_MOST_CODE_BITS 12u
 #define ACDF_MOST_HALVINGS 0x7FFFFFFu /* 2^27 - 1 */
 
+#ifndef ACDF_ENVIRONMENT_ONLY
 /* The streams of codec 2 (SPEC.md §4). Where there are several sizes, the stream of the smallest is named. */
 enum {
     ACDF_PLANE_HEADERS = 0,
@@ -236,6 +239,7 @@ typedef struct AcdfBrightTile {
     uint32_t low[2];    /* its box: positions on the axes 0 and 1 */
     uint32_t high[2];
 } AcdfBrightTile;
+#endif
 
 /* Chunk COMP of a file that is not to be used alone: this, then `record_count` records (0, or one a bin). */
 typedef struct AcdfPartner {
@@ -252,6 +256,7 @@ typedef struct AcdfPartnerRecord {
     float flux;                    /* of local environments: irradiance of the bin over `total`; else 0 */
 } AcdfPartnerRecord;
 
+#ifndef ACDF_ENVIRONMENT_ONLY
 /* Chunk PLAC, of local environments: what of the light reaches a position (SPEC.md §5.9). This, then `split_count`
  * splits, then 1 + `further_sets` sets of columns, a uint16 for each split of TILE, its column in a row or
  * ACDF_NO_COLUMN, then, where there are further sets, a uint16 for each row, its set, then `row_count` rows of
@@ -322,6 +327,7 @@ typedef struct AcdfViews {
     float diffuse_share; /* of a cosine lobe in the density */
 } AcdfViews;
 #define ACDF_VIEWS_MIRRORED 1u /* phi_h from 0 to pi stands for both sides */
+#endif
 
 #ifdef __cplusplus
 #define ACDF_STATIC_ASSERT(condition) static_assert(condition, #condition)
@@ -341,18 +347,20 @@ ACDF_STATIC_ASSERT(offsetof(AcdfDescription, total) == 56);
 ACDF_STATIC_ASSERT(sizeof(AcdfAxis) == 48);
 ACDF_STATIC_ASSERT(offsetof(AcdfAxis, low) == 32);
 ACDF_STATIC_ASSERT(sizeof(AcdfBin) == 8);
+ACDF_STATIC_ASSERT(sizeof(AcdfPartner) == 24);
+ACDF_STATIC_ASSERT(sizeof(AcdfPartnerRecord) == 8);
+#ifndef ACDF_ENVIRONMENT_ONLY
 ACDF_STATIC_ASSERT(sizeof(AcdfPlanes) == 44);
 ACDF_STATIC_ASSERT(sizeof(AcdfTiles) == 528);
 ACDF_STATIC_ASSERT(sizeof(AcdfSplit) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalHeader) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfBrightTile) == 40);
 ACDF_STATIC_ASSERT(sizeof(AcdfViews) == 16);
-ACDF_STATIC_ASSERT(sizeof(AcdfPartner) == 24);
-ACDF_STATIC_ASSERT(sizeof(AcdfPartnerRecord) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfVisibility) == 88);
 ACDF_STATIC_ASSERT(sizeof(AcdfVisibilitySplit) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortals) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortal) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortalMap) == 40);
+#endif
 
 #endif

@@ -5,6 +5,7 @@
 #include "build/weight_bound.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +55,7 @@ BrdfAccuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compres
 
 std::string option_text(const BrdfFileOptions& options) {
     const compress::BrdfOptions& fit = options.fit;
-    std::string text = target_text({options.weights, options.channels, ACDF_FILTER_NEAREST}) +
+    std::string text = target_text({options.weights, options.channels, ACDF_FILTER_BILINEAR}) +
                        codec_text(options.codec) + fit_text(fit.fit);
     if (fit.theta_views) {
         text += "--views " + std::to_string(fit.theta_views);

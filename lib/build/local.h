@@ -20,7 +20,7 @@ namespace acdf::build {
 struct SceneVisibility {
     compress::VisibilityScene scene; ///< empty: there are no visibility cells
     std::uint64_t local_bytes = 0;   ///< of the budget, for what is there without visibility cells and the tree of
-                                   ///< the environment; 0: a quarter of the rest
+                                     ///< the environment; 0: a quarter of the rest
     compress::VisibilityFrame frame;
     std::vector<compress::PortalRectangle> portals; ///< among the cells
 };

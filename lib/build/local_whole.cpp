@@ -4,6 +4,7 @@
 #include "compress/local/whole.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <algorithm>
 #include <stdexcept>

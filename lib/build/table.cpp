@@ -7,6 +7,7 @@
 #include "compress/sum.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <algorithm>
 #include <cfloat>
@@ -19,7 +20,6 @@ namespace acdf::build {
 namespace {
 
 constexpr std::uint64_t max_bins = 1 << 20; // each has a partition of its own while it is fitted
-constexpr std::uint32_t default_cells = 4096, least_default_cells = 64;
 
 std::string number(double value, const char* format = "%.9g") {
     char text[32];
@@ -208,8 +208,6 @@ Table build_table(const Array& array, const std::string& source_name, const std:
     std::fill(description.channel_weights, description.channel_weights + 3, 0.0);
     description.channel_weights[0] = 1.0; // a table has one channel
 
-    if (options.cells == 0)
-        options.cells = std::max(least_default_cells, static_cast<std::uint32_t>(default_cells / bins.size()));
     options.fit.goal.cells = static_cast<std::uint32_t>(
         std::min<std::uint64_t>(std::uint64_t{options.cells} * bins.size(), 0xFFFFFFFFu));
     description.metadata = metadata(source_name, source_sha256, options, {});

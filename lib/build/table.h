@@ -21,7 +21,7 @@ struct TableOptions {
     std::uint32_t indexed = 0;                     ///< leading axes that the caller of a sample chooses
     std::vector<std::string> names;                ///< one an axis; empty: x0, x1, ...
     std::vector<std::pair<double, double>> ranges; ///< one an axis: coordinates of its ends; empty: 0 to its length
-    std::uint32_t cells = 0;                       ///< a bin, on average; 0: 4096 in all, at least 64 each
+    std::uint32_t cells = 4096;                    ///< a bin, on average, where those are the goal
     compress::FitOptions fit;                      ///< goal (cells: see above), max_weight, progress
     compress::Partner mis;                         ///< ACDF_PARTNER_TABLE or none
     const Array* other = nullptr;                  ///< that table; it must outlive the build

@@ -63,11 +63,10 @@ double integral(const Target& target) {
     return total.value();
 }
 
-const Target& looked_up(const Target& target, Target& other) {
+const Target& of_texels(const Target& target, Target& other) {
     if (target.peaks.empty()) return target;
     other = target;
     other.peaks = {};
-    other.means = {};
     return other;
 }
 

@@ -112,8 +112,9 @@ double integral(const Target& target);
 /// E[(f/p)^2] of the best density that is constant on texels, over `mean_square`: at least 1, and 1 where g is f.
 double least_second_moment(const Target& target);
 
-/// A map whose lookup is g itself, for samplers that know no other: `target`, or one that is made in `other`.
-const Target& looked_up(const Target& target, Target& other);
+/// The map as samplers of texels see it, which sample them by g: without the peaks. `target`, or one that is made
+/// in `other`.
+const Target& of_texels(const Target& target, Target& other);
 
 /// Sums of one integrand, of each channel that counts.
 class ChannelSums {

@@ -66,6 +66,16 @@ py::dict metadata_of(const AcdfFile* file) {
     return out;
 }
 
+/// What a file takes in memory: its bytes, what was inflated of them, and the tables made at load.
+std::uint64_t memory_of(const AcdfFile* file) {
+    const std::uint64_t tables = acdf_table_bytes(file);
+    std::uint64_t sum = acdf_size(file) + tables;
+    AcdfMove parts[ACDF_MAX_MOVES];
+    const int inflated = acdf_memory(file, parts) - (tables > 0 ? 1 : 0); // the file first, its tables last
+    for (int i = 1; i < inflated; ++i) sum += parts[i].bytes;
+    return sum;
+}
+
 py::dict description_of(const OpenFile& open) {
     const AcdfFile* file = open.file();
     const AcdfHeader* header = acdf_header(file);
@@ -75,6 +85,7 @@ py::dict description_of(const OpenFile& open) {
     out["version"] = std::to_string(header->version_major) + "." + std::to_string(header->version_minor);
     out["bytes"] = acdf_size(file);
     out["table_bytes"] = acdf_table_bytes(file);
+    out["memory_bytes"] = memory_of(file);
     out["bins"] = description->bin_count;
     out["partner"] = partner_of(file);
     out["axes"] = axes_of(file);

@@ -4,6 +4,7 @@
 #include "python/arrays.h"
 
 #include <acdf/acdf.h>
+#include <acdf/batch/batch_c.h>
 
 #include <atomic>
 #include <memory>
@@ -31,17 +32,17 @@ public:
 private:
     struct Close {
         void operator()(AcdfFile* file) const { acdf_close(file); }
-        void operator()(AcdfBrdfWaves* waves) const { acdf_brdf_waves_close(waves); }
+        void operator()(AcdfBrdfBatch* batches) const { acdf_brdf_batch_close(batches); }
     };
 
     explicit OpenFile(AcdfFile* file, py::object keeps) : keeps_(std::move(keeps)), file_(file) {}
-    const AcdfBrdfWaves* waves(std::size_t count) const;
+    const AcdfBrdfBatch* batches(std::size_t count) const;
     py::tuple sample_table(const py::object& condition, const py::object& u, const py::tuple& out) const;
 
     py::object keeps_;
     std::unique_ptr<AcdfFile, Close> file_;
     mutable std::once_flag asked_;
-    mutable std::unique_ptr<AcdfBrdfWaves, Close> waves_; ///< of BRDFs, made for the first large array
+    mutable std::unique_ptr<AcdfBrdfBatch, Close> batch_; ///< of BRDFs, made for the first large array
 };
 
 /// Adds OpenFile to the module.

@@ -1,37 +1,21 @@
 // The C interface: acdf::File behind an opaque pointer. malloc and not new, so that a C program that links the
 // reader needs no C++ runtime library.
-#include "c_file.h"
-#include "memory.h"
+#include "check/check.h"
+#include "opened_file.h"
 
 #include <cstring>
-#include <new>
-#include <utility>
 
 static_assert(sizeof(AcdfError::message) == sizeof(acdf::Status::message));
 static_assert(ACDF_UNSUPPORTED == static_cast<int>(acdf::ErrorCode::unsupported));
 
-void acdf::report(const Status& status, AcdfError* error) {
+namespace {
+
+void report(const acdf::Status& status, AcdfError* error) {
     if (!error) return;
     error->code = static_cast<AcdfErrorCode>(status.code);
     error->rule = status.rule;
     error->offset = status.offset;
     std::memcpy(error->message, status.message, sizeof(status.message));
-}
-
-namespace {
-
-using acdf::report;
-
-AcdfFile* keep(const acdf::Status& status, acdf::File& file, const AcdfAllocator& allocator, AcdfError* error) {
-    report(status, error);
-    if (!status.ok()) return nullptr;
-    const AcdfBlock block = acdf::take_block(allocator, sizeof(AcdfFile));
-    if (block.data) return new (block.data) AcdfFile(std::move(file), allocator, block);
-    acdf::Status failure;
-    failure.code = acdf::ErrorCode::out_of_memory;
-    std::memcpy(failure.message, "out of memory", sizeof("out of memory"));
-    report(failure, error);
-    return nullptr;
 }
 
 acdf::LoadOptions of(const AcdfLoadOptions& from) {
@@ -51,25 +35,18 @@ AcdfLoadOptions plain() {
 
 } // namespace
 
-AcdfFile::AcdfFile(acdf::File&& from, const AcdfAllocator& memory, const AcdfBlock& place) noexcept
-    : file(std::move(from)), allocator(memory), block(place) {
-    if (file.kind() == ACDF_KIND_ENVIRONMENT) environment = file.environment().data();
-    if (file.kind() == ACDF_KIND_LOCAL) local = file.local().data();
-    if (file.kind() == ACDF_KIND_BRDF) brdf = file.brdf().data();
-    if (file.kind() == ACDF_KIND_TABLE) table = file.table().data();
-}
-
 AcdfFile* acdf_open_with(const char* path, const AcdfLoadOptions* options, AcdfError* error) {
-    if (!options) return acdf_open(path, error);
-    acdf::File file;
-    const acdf::Status status = acdf::File::open(path, file, of(*options));
-    return keep(status, file, options->allocator, error);
+    acdf::Status status;
+    AcdfFile* const file = acdf::open_path(path, of(options ? *options : AcdfLoadOptions{}), status);
+    report(status, error);
+    return file;
 }
 AcdfFile* acdf_from_memory_with(const void* data, size_t size, const AcdfLoadOptions* options, AcdfError* error) {
-    if (!options) return acdf_from_memory(data, size, error);
-    acdf::File file;
-    const acdf::Status status = acdf::File::from_memory(data, data ? size : 0, file, of(*options));
-    return keep(status, file, options->allocator, error);
+    acdf::Status status;
+    AcdfFile* const file =
+        acdf::open_bytes(data, data ? size : 0, of(options ? *options : AcdfLoadOptions{}), status);
+    report(status, error);
+    return file;
 }
 
 AcdfFile* acdf_open(const char* path, AcdfError* error) {
@@ -89,66 +66,84 @@ AcdfFile* acdf_from_memory_plain(const void* data, size_t size, AcdfError* error
     return acdf_from_memory_with(data, size, &options, error);
 }
 
-void acdf_close(AcdfFile* file) {
-    if (!file) return;
-    const AcdfAllocator allocator = file->allocator;
-    AcdfBlock block = file->block;
-    file->~AcdfFile();
-    acdf::give_block(allocator, block);
+void acdf_close(AcdfFile* file) { acdf::close_file(file); }
+
+namespace {
+
+// Whether `file` is of a kind; then `view` goes to `out`, which may be null.
+template <class View>
+int of_kind(const AcdfFile* file, AcdfKind kind, View AcdfFile::*view, View* out) {
+    if (!file || file->kind() != kind) return 0;
+    if (out) *out = file->*view;
+    return 1;
 }
+
+} // namespace
 
 int acdf_environment(const AcdfFile* file, AcdfEnvironment* out) {
-    if (!file || file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
-    if (out) *out = file->environment;
-    return 1;
+    return of_kind(file, ACDF_KIND_ENVIRONMENT, &AcdfFile::environment, out);
 }
-
+#ifndef ACDF_ENVIRONMENT_ONLY
 int acdf_local(const AcdfFile* file, AcdfLocal* out) {
-    if (!file || file->file.kind() != ACDF_KIND_LOCAL) return 0;
-    if (out) *out = file->local;
-    return 1;
+    return of_kind(file, ACDF_KIND_LOCAL, &AcdfFile::local, out);
 }
-
-int acdf_brdf(const AcdfFile* file, AcdfBrdf* out) {
-    if (!file || file->file.kind() != ACDF_KIND_BRDF) return 0;
-    if (out) *out = file->brdf;
-    return 1;
-}
-
+int acdf_brdf(const AcdfFile* file, AcdfBrdf* out) { return of_kind(file, ACDF_KIND_BRDF, &AcdfFile::brdf, out); }
 int acdf_table(const AcdfFile* file, AcdfTable* out) {
-    if (!file || file->file.kind() != ACDF_KIND_TABLE) return 0;
-    if (out) *out = file->table;
-    return 1;
+    return of_kind(file, ACDF_KIND_TABLE, &AcdfFile::table, out);
 }
 
-AcdfKind acdf_kind(const AcdfFile* file) { return file->file.kind(); }
-int acdf_memory(const AcdfFile* file, AcdfMove* moves) { return file->file.memory(moves); }
-uint64_t acdf_table_bytes(const AcdfFile* file) { return file->file.table_bytes(); }
-uint64_t acdf_size(const AcdfFile* file) { return file->file.size(); }
-const AcdfHeader* acdf_header(const AcdfFile* file) { return &file->file.header(); }
-const AcdfDescription* acdf_description(const AcdfFile* file) { return &file->file.description(); }
+int acdf_memory(const AcdfFile* file, AcdfMove* moves) {
+    int count = 0;
+    moves[count++] = {file->bytes, static_cast<size_t>(file->size), nullptr};
+    for (int i = 1; i < 3; ++i)
+        if (file->memory[i].data) moves[count++] = {file->memory[i].data, file->memory[i].bytes, nullptr};
+    return count;
+}
+#endif
+
+AcdfKind acdf_kind(const AcdfFile* file) { return file->kind(); }
+uint64_t acdf_table_bytes(const AcdfFile* file) { return file->table_bytes; }
+uint64_t acdf_size(const AcdfFile* file) { return file->size; }
+const AcdfHeader* acdf_header(const AcdfFile* file) { return reinterpret_cast<const AcdfHeader*>(file->bytes); }
+const AcdfDescription* acdf_description(const AcdfFile* file) { return file->description; }
 
 const AcdfAxis* acdf_axis(const AcdfFile* file, uint32_t axis) {
-    return axis < file->file.description().axis_count ? &file->file.axis(axis) : nullptr;
+    return axis < file->description->axis_count ? &file->axes[axis] : nullptr;
 }
 
 const AcdfBin* acdf_bin(const AcdfFile* file, uint32_t bin) {
-    return file->file.has_bins() && bin < file->file.description().bin_count ? &file->file.bin(bin) : nullptr;
+    return file->bins && bin < file->description->bin_count ? &file->bins[bin] : nullptr;
 }
 
-uint32_t acdf_metadata_count(const AcdfFile* file) { return file->file.metadata_count(); }
+namespace {
+
+// Reads a length and its text, and moves behind them.
+AcdfText next_text(const std::uint8_t*& at) {
+    const AcdfText text{reinterpret_cast<const char*>(at) + 4, acdf::load_u32(at)};
+    at += 4 + text.size;
+    return text;
+}
+
+} // namespace
+
+uint32_t acdf_metadata_count(const AcdfFile* file) { return file->metadata_count; }
 
 int acdf_metadata_pair(const AcdfFile* file, uint32_t i, AcdfText* key, AcdfText* value) {
-    if (i >= file->file.metadata_count()) return 0;
-    acdf::Text k, v;
-    file->file.metadata(i, k, v);
-    if (key) *key = {k.data, k.size};
-    if (value) *value = {v.data, v.size};
+    if (i >= file->metadata_count) return 0;
+    const std::uint8_t* at = file->metadata;
+    for (uint32_t pair = 0; pair < i; ++pair) next_text(at), next_text(at);
+    const AcdfText first = next_text(at), second = next_text(at);
+    if (key) *key = first;
+    if (value) *value = second;
     return 1;
 }
 
 AcdfText acdf_metadata_value(const AcdfFile* file, const char* key) {
-    if (!key) return {nullptr, 0};
-    const acdf::Text value = file->file.metadata(key);
-    return {value.data, value.size};
+    const size_t size = key ? std::strlen(key) : 0;
+    const std::uint8_t* at = file->metadata;
+    for (uint32_t pair = 0; key && pair < file->metadata_count; ++pair) {
+        const AcdfText found = next_text(at), value = next_text(at);
+        if (found.size == size && std::memcmp(found.data, key, size) == 0) return value;
+    }
+    return {nullptr, 0};
 }

@@ -1,18 +1,20 @@
 // `File`: ownership and access. What is right and wrong is decided in check*.cpp.
 #include "check/check.h"
+#include "check/rule_codes.h"
 #include "halved_tree.h"
 #include "input_file.h"
 #include "memory.h"
-#include "tables/brdf.h"
-#include "tables/local.h"
-#include "tables/table_entries.h"
-#include "waves/brdf.h"
-#include "waves/cut.h"
+#include "opened_file.h"
+#ifndef ACDF_ENVIRONMENT_ONLY
+#include "tables/tree_survey.h"
+#endif
+
+#include <acdf/environment_view.h>
 
 #include <cstdarg>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
+#include <new>
 #include <utility>
 
 namespace acdf {
@@ -37,31 +39,33 @@ void tidy(char* message) {
         if (static_cast<u8>(*c) < 0x20 || *c == 0x7F) *c = '?';
 }
 
-Status failure(const Finding& finding) {
-    Status status;
-    status.code = finding.rule->code;
-    status.rule = finding.rule->number;
-    status.offset = finding.offset;
-    std::snprintf(status.message, sizeof status.message, "%s (rule %d at byte %llu: %s)", finding.detail,
-                  finding.rule->number, static_cast<ull>(finding.offset), finding.rule->sentence);
+// `detail` may be empty. Statuses are written in place: copies of their messages would be half of what opens files.
+void fail_at(Status& status, int rule, u64 offset, const char* detail) {
+    status.code = code_of(rule);
+    status.rule = rule;
+    status.offset = offset;
+#ifdef ACDF_ENVIRONMENT_ONLY
+    std::snprintf(status.message, sizeof status.message, "%s%srule %d of SPEC.md is broken at byte %llu", detail,
+                  *detail ? ": " : "", rule, static_cast<ull>(offset));
+#else
+    std::snprintf(status.message, sizeof status.message, "%s (rule %d at byte %llu: %s)", detail, rule,
+                  static_cast<ull>(offset), find_rule(rule)->sentence);
+#endif
     tidy(status.message);
-    return status;
 }
 
 #if defined(__GNUC__)
-__attribute__((format(printf, 2, 3)))
+__attribute__((format(printf, 3, 4)))
 #endif
-Status
-failure(int rule, const char* format, ...) {
-    Finding finding;
+bool
+fail(Status& status, int rule, const char* format, ...) {
     char detail[160];
     va_list arguments;
     va_start(arguments, format);
     std::vsnprintf(detail, sizeof detail, format, arguments);
     va_end(arguments);
-    finding.rule = find_rule(rule);
-    finding.detail = detail;
-    return failure(finding);
+    fail_at(status, rule, 0, detail);
+    return false;
 }
 
 // Puts the path in front; of a long one the end, which tells files apart.
@@ -70,250 +74,194 @@ void name_file(Status& status, const char* path) {
     const std::size_t length = std::strlen(path);
     const char* shown = length > longest ? path + (length - longest) : path;
     while (shown > path && (*shown & 0xC0) == 0x80) ++shown;
-    Status whole = status;
-    std::snprintf(whole.message, sizeof whole.message, "%s%s: %.200s", shown > path ? "..." : "", shown,
-                  status.message);
-    tidy(whole.message);
-    status = whole;
+    char whole[sizeof status.message];
+    std::snprintf(whole, sizeof whole, "%s%s: %.200s", shown > path ? "..." : "", shown, status.message);
+    tidy(whole);
+    std::memcpy(status.message, whole, sizeof whole);
 }
 
 bool first_error(const Finding& finding, void* status) {
-    if (finding.rule->severity == Severity::warning) return true;
-    *static_cast<Status*>(status) = failure(finding);
+    if (code_of(finding.number) == ErrorCode::none) return true;
+#ifdef ACDF_ENVIRONMENT_ONLY
+    fail_at(*static_cast<Status*>(status), finding.number, finding.offset, "");
+#else
+    fail_at(*static_cast<Status*>(status), finding.number, finding.offset, finding.detail);
+#endif
     return false;
 }
 
-Status take(const AcdfAllocator& allocator, u64 size, AcdfBlock& block) {
+// What follows is false, and `status` says why, where it fails.
+
+bool take(const AcdfAllocator& allocator, u64 size, AcdfBlock& block, Status& status) {
     if (size < SIZE_MAX - ACDF_ALIGNMENT) block = take_block(allocator, static_cast<std::size_t>(size));
-    return block.data ? Status{} : failure(1003, "%llu bytes", static_cast<ull>(size));
+    return block.data || fail(status, 1003, "%llu bytes", static_cast<ull>(size));
 }
 
-Status check_limit(u64 size, const Limits& limits) {
-    if (size <= limits.max_file_bytes) return {};
-    return failure(1004, "%llu bytes, the limit is %llu", static_cast<ull>(size),
-                   static_cast<ull>(limits.max_file_bytes));
+bool is_within(u64 size, const Limits& limits, Status& status) {
+    return size <= limits.max_file_bytes || fail(status, 1004, "%llu bytes, the limit is %llu",
+                                                 static_cast<ull>(size), static_cast<ull>(limits.max_file_bytes));
 }
 
-Status read_path(const char* path, const LoadOptions& options, AcdfBlock& block, u64& size) {
+bool read_path(const char* path, const LoadOptions& options, AcdfBlock& block, u64& size, Status& status) {
     InputFile input;
-    if (const char* wrong = input.open(path)) return failure(1001, "%s", wrong);
-    if (const char* wrong = input.measure(size)) return failure(1002, "%s", wrong);
-    if (Status status = check_limit(size, options.limits); !status.ok()) return status;
-    if (Status status = take(options.allocator, size, block); !status.ok()) return status;
+    if (const char* wrong = input.open(path)) return fail(status, 1001, "%s", wrong);
+    if (const char* wrong = input.measure(size)) return fail(status, 1002, "%s", wrong);
+    if (!is_within(size, options.limits, status) || !take(options.allocator, size, block, status)) return false;
     u64 done = 0;
-    if (const char* wrong = input.read(block.data, size, done)) return failure(1002, "%s", wrong);
-    if (done < size) return failure(1002, "it shrank to %llu bytes while being read", static_cast<ull>(done));
-    return {};
+    if (const char* wrong = input.read(block.data, size, done)) return fail(status, 1002, "%s", wrong);
+    return done == size || fail(status, 1002, "it shrank to %llu bytes while being read", static_cast<ull>(done));
 }
 
-// Reads a length and its text, and moves behind them.
-Text next_text(const u8*& at) {
-    const Text text{reinterpret_cast<const char*>(at) + 4, load_u32(at)};
-    at += 4 + text.size;
-    return text;
+// False where there is no memory.
+bool make_halved(const Parts& parts, bool lookup, AcdfFile& file) noexcept {
+    u32 resolution[ACDF_MAX_AXES], count = 0;
+    for (u32 axis = 0; axis < parts.description->axis_count; ++axis)
+        if (parts.axes[axis].role == ACDF_AXIS_SAMPLED) resolution[count++] = parts.axes[axis].resolution;
+    const HalvedSource source = {
+        parts.halvings, parts.halving_count, resolution, count, parts.description->parameterization, lookup};
+    AcdfHalvedTree* const tree = make_halved_tree(source, file.allocator, file.memory[2]);
+    file.environment.halved = tree;
+    if (tree) file.table_bytes = 4 * u64{tree->words};
+    return tree != nullptr;
+}
+
+void give_memory(AcdfFile& file) noexcept {
+    for (AcdfBlock& block : file.memory) give_block(file.allocator, block);
+}
+
+void take_parts(const Parts& parts, AcdfFile& file) noexcept {
+    file.description = parts.description;
+    file.axes = parts.axes;
+    file.bins = parts.bins;
+    file.tree = parts.tree;
+    file.tree_units = parts.tree_units;
+    file.partner = parts.partner;
+    file.metadata = parts.metadata;
+    file.metadata_count = parts.metadata_count;
+    if (file.kind() != ACDF_KIND_ENVIRONMENT) return;
+    file.environment.tree = parts.tree;
+    file.environment.root = parts.bins ? parts.bins[0].root : 0;
+    file.environment.columns = parts.axes[ACDF_AXIS_PHI].resolution;
+    file.environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
+    file.environment.total = parts.description->total;
+    file.environment.parameterization = parts.description->parameterization;
+    file.environment.partner = parts.partner;
+    file.environment.tree_units = parts.tree_units;
+}
+
+// Checks the bytes of a file, and makes its view. On failure the caller gives its memory back.
+bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
+    Parts parts;
+#ifndef ACDF_ENVIRONMENT_ONLY
+    TreeSurvey survey;
+    if (options.tables) parts.survey = &survey;
+#endif
+    check(file.bytes, file.size, options.limits, first_error, &status, parts, options.allocator);
+    file.memory[1] = parts.inflated;
+    if (!status.ok()) return false;
+    take_parts(parts, file);
+    if (parts.halvings && !make_halved(parts, options.tables, file))
+        return fail(status, 1003, "%llu halvings", ull{parts.halving_count});
+#ifndef ACDF_ENVIRONMENT_ONLY
+    if (file.kind() != ACDF_KIND_ENVIRONMENT) make_view(parts, options.tables ? &survey : nullptr, file);
+#endif
+    return true;
+}
+
+// Of bytes that the file owns, if `owned` has them.
+AcdfFile* load(const void* data, std::size_t size, const LoadOptions& options, AcdfBlock owned,
+               Status& status) noexcept {
+    AcdfFile file = {};
+    file.bytes = static_cast<const u8*>(data);
+    file.size = size;
+    file.allocator = options.allocator;
+    file.memory[0] = owned;
+    if (load(options, file, status) && take(options.allocator, sizeof file, file.own, status))
+        return new (file.own.data) AcdfFile(file);
+    give_memory(file);
+    return nullptr;
 }
 
 } // namespace
 
-File::~File() { release(); }
-
-void File::release() noexcept {
-    for (AcdfBlock& block : owned_) give_block(allocator_, block);
+AcdfFile* open_path(const char* path, const LoadOptions& options, Status& status) noexcept {
+    AcdfBlock block = {};
+    u64 size = 0;
+    AcdfFile* file = nullptr;
+    if (!path) return fail(status, 1001, "no path is given"), nullptr;
+    if (read_path(path, options, block, size, status))
+        file = load(block.data, static_cast<std::size_t>(size), options, block, status);
+    else give_block(options.allocator, block);
+    if (!file) name_file(status, path);
+    return file;
 }
 
-File::File(File&& other) noexcept { *this = std::move(other); }
+AcdfFile* open_bytes(const void* data, std::size_t size, const LoadOptions& options, Status& status) noexcept {
+    AcdfBlock copy = {};
+    if (!is_within(size, options.limits, status)) return nullptr;
+    if (reinterpret_cast<std::uintptr_t>(data) % alignof(AcdfHeader) != 0) {
+        if (!take(options.allocator, size, copy, status)) return nullptr;
+        data = std::memcpy(copy.data, data, size);
+    }
+    return load(data, size, options, copy, status);
+}
 
+void close_file(AcdfFile* file) noexcept {
+    if (!file) return;
+    const AcdfAllocator allocator = file->allocator;
+    AcdfBlock own = file->own;
+    give_memory(*file);
+    give_block(allocator, own);
+}
+
+File::~File() { close_file(opened_); }
+File::File(File&& other) noexcept : opened_(std::exchange(other.opened_, nullptr)) {}
 File& File::operator=(File&& other) noexcept {
-    if (this == &other) return *this;
-    release();
-    bytes_ = std::exchange(other.bytes_, nullptr);
-    size_ = std::exchange(other.size_, 0);
-    description_ = std::exchange(other.description_, nullptr);
-    axes_ = std::exchange(other.axes_, nullptr);
-    bins_ = std::exchange(other.bins_, nullptr);
-    tree_ = std::exchange(other.tree_, nullptr);
-    tree_units_ = std::exchange(other.tree_units_, 0);
-    blend_ = std::exchange(other.blend_, AcdfBlend{});
-    fast_ = std::exchange(other.fast_, AcdfFast{});
-    local_ = std::exchange(other.local_, nullptr);
-    bright_tiles_ = std::exchange(other.bright_tiles_, nullptr);
-    partner_ = std::exchange(other.partner_, nullptr);
-    visibility_ = std::exchange(other.visibility_, AcdfVisibilityTable{});
-    portals_ = std::exchange(other.portals_, AcdfPortalTable{});
-    views_ = std::exchange(other.views_, nullptr);
-    nodes_ = std::exchange(other.nodes_, nullptr);
-    metadata_ = std::exchange(other.metadata_, nullptr);
-    metadata_count_ = std::exchange(other.metadata_count_, 0);
-    halved_ = std::exchange(other.halved_, nullptr);
-    local_tables_ = std::exchange(other.local_tables_, nullptr);
-    brdf_tables_ = std::exchange(other.brdf_tables_, nullptr);
-    entries_ = std::exchange(other.entries_, nullptr);
-    allocator_ = other.allocator_;
-    for (int i = 0; i < 3; ++i) owned_[i] = std::exchange(other.owned_[i], AcdfBlock{});
+    if (this != &other) close_file(std::exchange(opened_, std::exchange(other.opened_, nullptr)));
     return *this;
 }
 
 Status File::open(const char* path, File& file, const LoadOptions& options) noexcept {
-    AcdfBlock block = {};
-    u64 size = 0;
-    file = File();
-    if (!path) return failure(1001, "no path is given");
-    Status status = read_path(path, options, block, size);
-    if (status.ok()) status = from_memory(block.data, static_cast<std::size_t>(size), file, options);
-    if (status.ok()) {
-        file.owned_[0] = block;
-        return status;
-    }
-    give_block(options.allocator, block);
-    name_file(status, path);
-    return status;
-}
-
-Status File::from_memory(const void* data, std::size_t size, File& file, const LoadOptions& options) noexcept {
-    File loaded;
-    file = File();
-    loaded.allocator_ = options.allocator;
-    if (Status status = check_limit(size, options.limits); !status.ok()) return status;
-    if (reinterpret_cast<std::uintptr_t>(data) % alignof(AcdfHeader) != 0) {
-        if (Status status = take(options.allocator, size, loaded.owned_[0]); !status.ok()) return status;
-        data = std::memcpy(loaded.owned_[0].data, data, size);
-    }
     Status status;
-    Parts parts;
-    TreeSurvey survey;
-    if (options.tables) parts.survey = &survey;
-    check(static_cast<const u8*>(data), size, options.limits, first_error, &status, parts, options.allocator);
-    loaded.owned_[1] = parts.inflated;
-    if (!status.ok()) return status;
-    loaded.bytes_ = static_cast<const u8*>(data);
-    loaded.size_ = size;
-    loaded.description_ = parts.description;
-    loaded.axes_ = parts.axes;
-    loaded.bins_ = parts.bins;
-    loaded.tree_ = parts.tree;
-    loaded.tree_units_ = parts.tree_units;
-    loaded.blend_ = {parts.tiles, parts.splits, parts.tile_roots, parts.rows, parts.tree};
-    loaded.fast_ = parts.fast;
-    loaded.local_ = parts.local;
-    loaded.bright_tiles_ = parts.bright_tiles;
-    loaded.partner_ = parts.partner;
-    loaded.visibility_ = parts.visibility;
-    loaded.portals_ = parts.portals;
-    loaded.views_ = parts.views;
-    loaded.nodes_ = parts.nodes;
-    loaded.metadata_ = parts.metadata;
-    loaded.metadata_count_ = parts.metadata_count;
-    if (parts.halvings && !loaded.make_halved(parts, options.tables))
-        return failure(1003, "%llu halvings", ull{parts.halving_count});
-    if (options.tables) loaded.make_tables(survey);
-    file = std::move(loaded);
+    file = File();
+    file.opened_ = open_path(path, options, status);
+    return status;
+}
+Status File::from_memory(const void* data, std::size_t size, File& file, const LoadOptions& options) noexcept {
+    Status status;
+    file = File();
+    file.opened_ = open_bytes(data, size, options, status);
     return status;
 }
 
-// They are only for speed: where there is no memory for them, the file is as good without.
-void File::make_tables(const TreeSurvey& survey) noexcept {
-    const std::size_t most = 8 * static_cast<std::size_t>(size_) + (std::size_t{1} << 20);
-    if (kind() == ACDF_KIND_BRDF && can_have_tables(brdf().data()))
-        brdf_tables_ = make_brdf_tables(brdf().data(), most, true, allocator_, owned_[2]);
-    if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
-        local_tables_ = make_local_tables(local().data(), tree_units_, most, allocator_, owned_[2]);
-    if (kind() == ACDF_KIND_TABLE)
-        entries_ = make_table_entries(table().data(), description_->bin_count, survey, most, allocator_, owned_[2]);
-}
-
-// False where there is no memory.
-bool File::make_halved(const Parts& parts, bool lookup) noexcept {
-    u32 resolution[ACDF_MAX_AXES], count = 0;
-    for (u32 axis = 0; axis < description_->axis_count; ++axis)
-        if (axes_[axis].role == ACDF_AXIS_SAMPLED) resolution[count++] = axes_[axis].resolution;
-    const HalvedSource source = {
-        parts.halvings, parts.halving_count, resolution, count, description_->parameterization, lookup};
-    halved_ = make_halved_tree(source, allocator_, owned_[2]);
-    return halved_ != nullptr;
-}
+AcdfKind File::kind() const noexcept { return opened_->kind(); }
+const AcdfHeader& File::header() const noexcept { return *reinterpret_cast<const AcdfHeader*>(opened_->bytes); }
+const AcdfDescription& File::description() const noexcept { return *opened_->description; }
+const AcdfAxis& File::axis(std::uint32_t i) const noexcept { return opened_->axes[i]; }
+const AcdfBin& File::bin(std::uint32_t i) const noexcept { return opened_->bins[i]; }
+bool File::has_bins() const noexcept { return opened_->bins != nullptr; }
+const std::uint8_t* File::tree() const noexcept { return opened_->tree; }
+std::uint32_t File::tree_units() const noexcept { return opened_->tree_units; }
+std::uint64_t File::size() const noexcept { return opened_->size; }
+const AcdfPartner* File::partner() const noexcept { return opened_->partner; }
+std::uint64_t File::table_bytes() const noexcept { return opened_->table_bytes; }
+std::uint32_t File::metadata_count() const noexcept { return opened_->metadata_count; }
+EnvironmentView File::environment() const noexcept { return EnvironmentView(opened_->environment); }
 
 void File::metadata(u32 i, Text& key, Text& value) const noexcept {
-    key = value = Text();
-    if (i >= metadata_count_) return;
-    const u8* at = metadata_;
-    for (u32 pair = 0; pair <= i; ++pair) {
-        key = next_text(at);
-        value = next_text(at);
-    }
+    AcdfText first = {nullptr, 0}, second = {nullptr, 0};
+    acdf_metadata_pair(opened_, i, &first, &second);
+    key = {first.data, first.size};
+    value = {second.data, second.size};
 }
 
 Text File::metadata(const char* key) const noexcept {
-    const std::size_t size = std::strlen(key);
-    const u8* at = metadata_;
-    for (u32 pair = 0; pair < metadata_count_; ++pair) {
-        const Text found = next_text(at), value = next_text(at);
-        if (found.size == size && std::memcmp(found.data, key, size) == 0) return value;
-    }
-    return {};
+    const AcdfText value = acdf_metadata_value(opened_, key);
+    return {value.data, value.size};
 }
 
-int File::memory(AcdfMove* moves) const noexcept {
-    int count = 0;
-    moves[count++] = {bytes_, static_cast<std::size_t>(size_), nullptr};
-    for (int i = 1; i < 3; ++i)
-        if (owned_[i].data) moves[count++] = {owned_[i].data, owned_[i].bytes, nullptr};
-    return count;
-}
-
-EnvironmentView File::environment() const noexcept {
-    return EnvironmentView({tree_, bins_ ? bins_[0].root : 0, axes_[ACDF_AXIS_PHI].resolution,
-                            axes_[ACDF_AXIS_THETA].resolution, description_->total, description_->parameterization,
-                            halved_, partner_, tree_units_});
-}
-
-LocalEnvironmentView File::local() const noexcept {
-    AcdfLocal local = {};
-    local.blend = blend_;
-    local.environment = {tree_,
-                         0,
-                         axes_[ACDF_AXIS_PHI].resolution,
-                         axes_[ACDF_AXIS_THETA].resolution,
-                         description_->total,
-                         description_->parameterization,
-                         nullptr,
-                         nullptr, // complete whatever the file is made for: to be used alone
-                         tree_units_};
-    local.partner = partner_;
-    local.bins = bins_;
-    local.bright_tiles = bright_tiles_;
-    local.bright_tile_count = local_->bright_tile_count;
-    local.cosine_share = static_cast<double>(local_->cosine_share);
-    local.tables = local_tables_;
-    local.visibility = visibility_;
-    local.portals = portals_;
-    local.fast = fast_;
-    if (fast_.grid && local_tables_) acdf_local_use_upper(&local);
-#if ACDF_WAVEFRONT_X86
-    local.vectors = local_vectors();
+#ifndef ACDF_ENVIRONMENT_ONLY
+int File::memory(AcdfMove* moves) const noexcept { return acdf_memory(opened_, moves); }
 #endif
-    if (description_->axis_count == 3) { // an octahedron's 4 n^2 + 2 corners
-        while (4 * local.subdivisions * local.subdivisions + 2 < axes_[2].resolution) ++local.subdivisions;
-    } else {
-        local.rows = axes_[2].resolution;
-        local.columns = axes_[3].resolution;
-    }
-    return LocalEnvironmentView(local);
-}
-
-BrdfView File::brdf() const noexcept {
-    const AcdfBrdfVectors* vectors = nullptr;
-#if ACDF_WAVEFRONT_X86
-    vectors = brdf_vectors();
-#endif
-    return BrdfView({blend_, tree_, bins_, views_, nodes_, axes_[0].resolution, axes_[1].resolution,
-                     description_->total, brdf_tables_, vectors});
-}
-
-TableView File::table() const noexcept {
-    u32 indexed = 0;
-    while (axes_[indexed].role == ACDF_AXIS_INDEXED) ++indexed; // rule 5012: one axis at least is sampled
-    return TableView({tree_, bins_, axes_, description_->axis_count, indexed, description_->total, partner_,
-                      tree_units_, entries_});
-}
 
 } // namespace acdf

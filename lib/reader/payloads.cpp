@@ -1,11 +1,10 @@
 // Payloads: which chunks a reader takes, and how those that are compressed are inflated.
 #include "check/chunk_table.h"
+#include "inflate.h"
 #include "memory.h"
+#ifndef ACDF_ENVIRONMENT_ONLY
 #include "planes.h"
-
-#include <zlib.h>
-
-#include <cstdlib>
+#endif
 
 namespace acdf {
 namespace {
@@ -19,52 +18,6 @@ constexpr u32 known_types[known_chunks] = {
     ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS,  ACDF_CHUNK_TREE,  ACDF_CHUNK_METADATA, ACDF_CHUNK_TILES,
     ACDF_CHUNK_ROWS,        ACDF_CHUNK_LOCAL, ACDF_CHUNK_VIEWS, ACDF_CHUNK_PARTNER,  ACDF_CHUNK_VISIBILITY,
     ACDF_CHUNK_PORTALS,     ACDF_CHUNK_SUMS,  ACDF_CHUNK_GRID,  ACDF_CHUNK_HALVINGS};
-
-// Inflates a whole zlib stream to at most `out_size` bytes, and sets that to how many; null, or what is wrong.
-const char* inflate_within(const u8* in, u64 in_size, u8* out, u64& out_size) {
-    constexpr u64 step = u64{1} << 30; // zlib counts in 32 bits
-    z_stream stream = {};
-    if (inflateInit(&stream) != Z_OK) return "zlib cannot start";
-    stream.next_in = const_cast<u8*>(in);
-    stream.next_out = out;
-    u64 in_left = in_size, out_left = out_size;
-    int result = Z_OK;
-    while (result == Z_OK) {
-        const uInt in_now = static_cast<uInt>(in_left < step ? in_left : step);
-        const uInt out_now = static_cast<uInt>(out_left < step ? out_left : step);
-        stream.avail_in = in_now;
-        stream.avail_out = out_now;
-        result = inflate(&stream, Z_NO_FLUSH);
-        in_left -= in_now - stream.avail_in;
-        out_left -= out_now - stream.avail_out;
-        if (result == Z_OK && stream.avail_in == in_now && stream.avail_out == out_now) break; // no progress
-    }
-    inflateEnd(&stream);
-    if (result != Z_STREAM_END) return out_left == 0 ? "it goes on after `raw_length`" : "the stream is damaged";
-    out_size -= out_left;
-    return in_left != 0 ? "bytes follow the stream" : nullptr;
-}
-
-// The same to exactly `size` bytes.
-const char* inflate_exactly(const u8* in, u64 in_size, u8* out, u64 size) {
-    u64 inflated = size;
-    const char* wrong = inflate_within(in, in_size, out, inflated);
-    if (inflated != size) return "it ends before `raw_length`";
-    return wrong;
-}
-
-// Inflates the planes of a tree of `size` bytes, and puts it together.
-void inflate_tree(const AcdfChunk& chunk, const u8* in, u8* tree, Report& report, Payload& payload) {
-    u64 size = 2 * chunk.raw_length + sizeof(AcdfPlanes); // more than those of any tree
-    auto* planes = static_cast<u8*>(std::malloc(size));
-    if (!planes) return report.add(1003, 0, "%llu bytes for planes", static_cast<ull>(size));
-    const char* wrong = inflate_within(in, chunk.stored_length, planes, size);
-    if (!wrong && !planes_to_tree(planes, size, tree, chunk.raw_length))
-        wrong = "they are not those of such a tree";
-    std::free(planes);
-    if (wrong) return report.add(4005, chunk.offset, "planes: %s", wrong);
-    payload = {tree, chunk.raw_length, chunk.offset, true};
-}
 
 bool is_compressed(const ChunkTable& table, u32 i) {
     const AcdfChunk& chunk = table.chunks[i];
@@ -119,13 +72,18 @@ void read_payloads(const ChunkTable& table, const u8* bytes, const Limits& limit
         static u8 nothing; // zlib wants an address even for no bytes
         u8* const out = chunk.raw_length ? block : &nothing;
         u8* const after = block + round_up(chunk.raw_length, ACDF_ALIGNMENT);
+#ifndef ACDF_ENVIRONMENT_ONLY
         if (chunk.codec == ACDF_CODEC_PLANES) {
-            inflate_tree(chunk, bytes + chunk.offset, out, report, payloads.of[known]);
+            if (const char* wrong =
+                    inflate_planes(bytes + chunk.offset, chunk.stored_length, out, chunk.raw_length))
+                report.add(wrong == no_memory_for_planes ? 1003 : 4005, chunk.offset, "planes: %s", wrong);
+            else payloads.of[known] = {out, chunk.raw_length, chunk.offset, true};
             block = after;
             continue;
         }
+#endif
         payload = {out, chunk.raw_length, chunk.offset, true};
-        if (const char* wrong = inflate_exactly(bytes + chunk.offset, chunk.stored_length, out, chunk.raw_length)) {
+        if (const char* wrong = inflate(bytes + chunk.offset, chunk.stored_length, out, chunk.raw_length)) {
             report.add(4003, chunk.offset, "'%s': %s", ChunkName(chunk.type).text, wrong);
             continue;
         }

@@ -1,8 +1,11 @@
 // Puts a tree together from its planes.
 #include "planes.h"
 
-#include <acdf/sample.h>
+#include "inflate.h"
 
+#include <acdf/tree.h>
+
+#include <cstdlib>
 #include <cstring>
 
 namespace acdf {
@@ -160,6 +163,18 @@ private:
 bool planes_to_tree(const u8* planes, u64 size, u8* tree, u64 tree_size) noexcept {
     Decoder decoder(tree, tree_size);
     return decoder.open_streams(planes, size) && decoder.run();
+}
+
+const char no_memory_for_planes[] = "there is no memory for them";
+
+const char* inflate_planes(const u8* in, u64 in_size, u8* tree, u64 tree_size) noexcept {
+    u64 size = 2 * tree_size + sizeof(AcdfPlanes); // more than those of any tree
+    auto* planes = static_cast<u8*>(std::malloc(size));
+    if (!planes) return no_memory_for_planes;
+    const char* wrong = inflate_within(in, in_size, planes, size);
+    if (!wrong && !planes_to_tree(planes, size, tree, tree_size)) wrong = "they are not those of such a tree";
+    std::free(planes);
+    return wrong;
 }
 
 } // namespace acdf

@@ -11,4 +11,9 @@ namespace acdf {
 bool planes_to_tree(const std::uint8_t* planes, std::uint64_t size, std::uint8_t* tree,
                     std::uint64_t tree_size) noexcept;
 
+/// Inflates planes, and puts the tree together; null, or what is wrong.
+const char* inflate_planes(const std::uint8_t* in, std::uint64_t in_size, std::uint8_t* tree,
+                           std::uint64_t tree_size) noexcept;
+extern const char no_memory_for_planes[];
+
 } // namespace acdf

@@ -1,4 +1,4 @@
-// acdf/shader_walk.h and acdf/shader_brdf.h in the languages of shaders, with declarations of the tables and the
+// acdf/shader/walk.h and acdf/shader/brdf.h in the languages of shaders, with declarations of the tables and the
 // functions `acdf_sample` and `acdf_pdf`. The build makes them from these headers; head.txt and walk.txt of each
 // language are written by hand.
 #pragma once

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # build.sh BUILD VERSION: the reader in WebAssembly, and the npm package around it, in BUILD/web/package. BUILD has the
-# shaders' texts (target acdf_shader). Needs clang, lld, wasi-libc, libc++ and compiler-rt for WebAssembly; ends with 77
+# shaders' texts (target acdf_shader_texts). Needs clang, lld, wasi-libc, libc++ and compiler-rt for WebAssembly; ends with 77
 # where they are missing. CLANG names another clang++.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -10,8 +10,8 @@ clang=${CLANG:-clang++}
 work=$build/web
 mkdir -p "$work/objects" "$work/package"
 
-flags=(--target=wasm32-wasi -O2 -ffp-contract=off -fvisibility=hidden -DNDEBUG -Wall -Wextra)
-includes=(-I"$root/format" -I"$root/lib/reader" -I"$root/lib" -I"$here/zlib")
+flags=(--target=wasm32-wasi -Os -ffp-contract=off -fvisibility=hidden -DNDEBUG -Wall -Wextra)
+includes=(-I"$root/format" -I"$root/lib/reader" -I"$root/lib/shader" -I"$root/lib" -I"$here/zlib")
 libcxx=$(echo "$("$clang" -print-resource-dir)"/../../../include/wasm32-wasi/c++/v1)
 if ! echo '#include <utility>
 #include <cstdlib>' | "$clang" --target=wasm32-wasi -isystem "$libcxx" -isystem /usr/include/wasm32-wasi -x c++ -c - \
@@ -21,11 +21,11 @@ if ! echo '#include <utility>
 fi
 rm -f "$work"/objects/*.o
 
-# All of the reader but what opens files by name, vectors of this machine's processor and the symbols for other languages.
-for source in "$here/exports.cpp" "$root"/lib/reader/{,check/,tables/}*.cpp; do
+# The reader and the tables for shaders, but for the symbols for other languages.
+for source in "$here/exports.cpp" "$root"/lib/reader/{,check/,tables/}*.cpp "$root"/lib/shader/tables/*.cpp; do
     name=${source#"$root/lib/"}
     case $name in
-    */c_api.cpp | */linked.cpp | */product_c.cpp | *_avx* | *_windows.cpp) continue ;;
+    */linked.cpp | *_windows.cpp) continue ;;
     esac
     "$clang" "${flags[@]}" -std=c++17 -fno-exceptions -fno-rtti -isystem "$libcxx" -isystem /usr/include/wasm32-wasi \
         "${includes[@]}" -c "$source" -o "$work/objects/${name//[\/]/_}.o"

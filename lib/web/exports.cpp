@@ -2,7 +2,8 @@
 #include "reader/tables/sides.h"
 
 #include <acdf/reader.h>
-#include <acdf/shader_tables.h>
+#include <acdf/shader/tables.h>
+#include <acdf/views.h>
 
 #include <cmath>
 #include <cstdlib>

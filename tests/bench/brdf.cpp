@@ -1,4 +1,4 @@
-// Time of a sample and of a pdf of measured BRDFs: files of ours, one call at a time and in waves, beside the
+// Time of a sample and of a pdf of measured BRDFs: files of ours, one call at a time and in batches, beside the
 // sampler that the authors of the RGL database publish, the full table, an alias table and a hierarchical warp of
 // tabulated slices, and a GGX lobe. Each call has another view, another direction and other random numbers.
 //
@@ -14,7 +14,7 @@
 #include "measure/samplers/brdf_table.h"
 #include "measure/samplers/rgl_sampler.h"
 
-#include <acdf/wavefront.h>
+#include <acdf/batch/batch.h>
 
 #include <cmath>
 #include <cstdio>
@@ -34,7 +34,7 @@ using acdf_bench::keep;
 
 // So many before views and random numbers repeat. With a few thousand the processor learns the branches of each.
 constexpr std::size_t kQueries = 1 << 16;
-constexpr std::size_t kWave = 4096;
+constexpr std::size_t kBatch = 4096;
 constexpr double kPi = 3.14159265358979323846;
 
 const char* const kRglFile = "cc_ibiza_sunset_rgb.bsdf";
@@ -145,11 +145,11 @@ Sampler of_view(const std::string& name, const BrdfView& view) {
             each([view](const Query& q) { return view.pdf(q.wo, q.wi); })};
 }
 
-/// All queries, in arrays as BrdfWavefront takes them.
-struct Wave {
+/// All queries, in arrays as BrdfBatch takes them.
+struct QueryArrays {
     std::vector<float> wo, wi;
     std::vector<double> u;
-    Wave() {
+    QueryArrays() {
         for (const Query& q : queries()) {
             wo.insert(wo.end(), q.wo, q.wo + 3);
             wi.insert(wi.end(), q.wi, q.wi + 3);
@@ -163,21 +163,23 @@ struct Wave {
         return reinterpret_cast<const double(*)[2]>(&u[2 * first]);
     }
 };
-const Wave& wave() {
-    static const Wave made;
+const QueryArrays& query_arrays() {
+    static const QueryArrays made;
     return made;
 }
 
-Sampler of_waves(const std::string& name, const BrdfWavefront& wavefront) {
-    static std::vector<DirectionSample> samples(kWave);
-    static std::vector<float> pdfs(kWave);
+Sampler of_batches(const std::string& name, const BrdfBatch& batch) {
+    static std::vector<DirectionSample> samples(kBatch);
+    static std::vector<float> pdfs(kBatch);
     return {name,
-            [&wavefront](std::size_t first, std::size_t count) {
-                wavefront.sample(Wave::vectors(wave().wo, first), wave().numbers(first), count, samples.data());
+            [&batch](std::size_t first, std::size_t count) {
+                batch.sample(QueryArrays::vectors(query_arrays().wo, first), query_arrays().numbers(first), count,
+                             samples.data());
                 keep(samples[0]);
             },
-            [&wavefront](std::size_t first, std::size_t count) {
-                wavefront.pdf(Wave::vectors(wave().wo, first), Wave::vectors(wave().wi, first), count, pdfs.data());
+            [&batch](std::size_t first, std::size_t count) {
+                batch.pdf(QueryArrays::vectors(query_arrays().wo, first),
+                          QueryArrays::vectors(query_arrays().wi, first), count, pdfs.data());
                 keep(pdfs[0]);
             }};
 }
@@ -186,7 +188,7 @@ std::vector<double> times(const std::vector<Sampler>& samplers, bool of_pdfs, bo
     std::vector<Candidate> candidates;
     for (const Sampler& s : samplers) candidates.push_back({s.name, of_pdfs ? s.pdf : s.sample});
     acdf_bench::Turns turns;
-    turns.calls = evict ? 1024 : kWave;
+    turns.calls = evict ? 1024 : kBatch;
     turns.period = kQueries;
     turns.rounds = evict ? 40 : 200;
     turns.evict = evict;
@@ -225,18 +227,18 @@ void run(const std::string& source, const std::vector<std::uint64_t>& sizes) {
     samplers.push_back(in_floats("hierarchical warp", warp));
     samplers.push_back(in_doubles("GGX lobe", ggx));
     std::vector<std::unique_ptr<Built>> built;
-    std::vector<std::unique_ptr<BrdfWavefront>> wavefronts;
+    std::vector<std::unique_ptr<BrdfBatch>> batches;
     for (const std::uint64_t kib : sizes) {
         built.push_back(std::make_unique<Built>(*brdf, kib << 10));
         const std::string size = std::to_string(kib) + " KiB";
         samplers.push_back(of_view(size, built.back()->tables.brdf()));
         samplers.push_back(of_view(size + ", no tables", built.back()->plain.brdf()));
         for (const Instructions most : {Instructions::avx2, Instructions::avx512}) {
-            wavefronts.push_back(std::make_unique<BrdfWavefront>());
-            BrdfWavefront::prepare(built.back()->tables.brdf(), *wavefronts.back(), most);
-            if (wavefronts.back()->instructions() == most)
+            batches.push_back(std::make_unique<BrdfBatch>());
+            BrdfBatch::prepare(built.back()->tables.brdf(), *batches.back(), most);
+            if (batches.back()->instructions() == most)
                 samplers.push_back(
-                    of_waves(size + (most == Instructions::avx2 ? ", AVX2" : ", AVX-512"), *wavefronts.back()));
+                    of_batches(size + (most == Instructions::avx2 ? ", AVX2" : ", AVX-512"), *batches.back()));
         }
         std::printf("\n%s, %s: tables of %llu bytes\n", source.c_str(), size.c_str(),
                     static_cast<unsigned long long>(built.back()->tables.table_bytes()));

@@ -15,6 +15,7 @@
 #include "measure/samplers/hierarchical_warp.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,13 +2,13 @@
 // many at once, beside the full table of an environment of as many columns, which knows nothing of normals.
 //
 //   bench_local FILE.acdf...      tables in Markdown
-//   bench_local --count point|sample|pdf FILE N [walk|waves]     N calls and nothing else, for callgrind; waves:
-//   AVX2
+//   bench_local --count point|sample|pdf FILE N [walk|batches]     N calls and nothing else, for callgrind;
+//   batches: AVX2
 #include "tests/bench/directions.h"
 #include "tests/bench/full_table.h"
 #include "tests/bench/turns.h"
 
-#include <acdf/wavefront.h>
+#include <acdf/batch/batch.h>
 
 #include <algorithm>
 #include <array>
@@ -29,7 +29,7 @@ using acdf_bench::uniform_directions;
 
 constexpr std::size_t kCalls = std::size_t{1} << 18; // before they repeat
 constexpr std::size_t kShared = 16;                  // calls a point, where a point has several
-constexpr std::size_t kWave = 4096;                  // calls at once
+constexpr std::size_t kBatch = 4096;                 // calls at once
 
 /// What is asked: normals, pairs of numbers, directions anywhere and such as are sampled. Coherent ones go over a
 /// sphere, and through the strata of the numbers, in the order of a picture's pixels.
@@ -90,27 +90,27 @@ struct Compared {
     const acdf_bench::FullTable& full;
     const LocalEnvironmentView &plain, &fast;
     bool evicted = false;
-    LocalWavefront waves[3] = {LocalWavefront(fast, Instructions::none), LocalWavefront(fast, Instructions::avx2),
-                               LocalWavefront(fast, Instructions::avx512)};
+    LocalBatch batches[3] = {LocalBatch(fast, Instructions::none), LocalBatch(fast, Instructions::avx2),
+                             LocalBatch(fast, Instructions::avx512)};
 };
 
-/// Calls of a wave from one on, into memory of its own.
-using Wave = std::function<void(const LocalWavefront& wavefront, std::size_t first, std::size_t count)>;
+/// Calls of a batch from one on, into memory of its own.
+using Batch = std::function<void(const LocalBatch& batch, std::size_t first, std::size_t count)>;
 
 /// `ours`: the calls of a view.
 template <class Ours, class Full>
-void report(const char* what, const Compared& all, const Ours& ours, const Full& full, const Wave& wave) {
+void report(const char* what, const Compared& all, const Ours& ours, const Full& full, const Batch& calls) {
     std::vector<Candidate> rows = {{"",
                                     [&](std::size_t first, std::size_t count) {
                                         for (std::size_t i = first; i < first + count; ++i) full(i);
                                     }},
                                    ours(all.plain),
                                    ours(all.fast)};
-    if (wave)
-        for (const LocalWavefront& wavefront : all.waves)
+    if (calls)
+        for (const LocalBatch& batch : all.batches)
             rows.push_back({"", [&](std::size_t first, std::size_t count) {
-                                for (std::size_t i = 0; i < count; i += kWave)
-                                    wave(wavefront, first + i, std::min(kWave, count - i));
+                                for (std::size_t i = 0; i < count; i += kBatch)
+                                    calls(batch, first + i, std::min(kBatch, count - i));
                             }});
     acdf_bench::Turns turns;
     if (all.evicted) turns = {20, 1024, kCalls, true};
@@ -118,7 +118,7 @@ void report(const char* what, const Compared& all, const Ours& ours, const Full&
     std::printf("| %s | %.1f |", what, rows[0].least);
     for (std::size_t i = 1; i < rows.size(); ++i)
         std::printf(" %.1f (%.2f) |", rows[i].least, rows[i].least / rows[0].least);
-    std::puts(wave ? "" : " | | |");
+    std::puts(calls ? "" : " | | |");
     std::fflush(stdout);
 }
 
@@ -164,30 +164,30 @@ bool run(const char* path) {
     const auto full_sample = full_sample_of(q);
     const auto full_anywhere = [&](std::size_t i) { keep(full.pdf(q.anywhere[i].data())); };
     const auto full_sampled = [&](std::size_t i) { keep(full.pdf(q.sampled[i].data())); };
-    std::vector<DirectionSample> samples(kWave);
-    std::vector<float> densities(kWave);
+    std::vector<DirectionSample> samples(kBatch);
+    std::vector<float> densities(kBatch);
     const auto* normals = reinterpret_cast<const float(*)[3]>(q.normals.data());
     const auto* u = reinterpret_cast<const double(*)[2]>(q.wide.data());
     const auto* directions_sampled = reinterpret_cast<const float(*)[3]>(q.sampled.data());
-    const auto samples_of = [&samples](const Questions& asked) -> Wave {
-        return [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
-            wavefront.sample(reinterpret_cast<const float(*)[3]>(asked.normals.data()) + first,
-                             reinterpret_cast<const double(*)[2]>(asked.wide.data()) + first, n, samples.data());
+    const auto samples_of = [&samples](const Questions& asked) -> Batch {
+        return [&](const LocalBatch& batch, std::size_t first, std::size_t n) {
+            batch.sample(reinterpret_cast<const float(*)[3]>(asked.normals.data()) + first,
+                         reinterpret_cast<const double(*)[2]>(asked.wide.data()) + first, n, samples.data());
         };
     };
-    const Wave draws = samples_of(q);
-    const Wave shared_samples = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
+    const Batch draws = samples_of(q);
+    const Batch shared_samples = [&](const LocalBatch& batch, std::size_t first, std::size_t n) {
         for (std::size_t i = first; i < first + n; i += kShared)
-            wavefront.sample(fast.at(normals[i]), u + i, kShared, &samples[i - first]);
+            batch.sample(fast.at(normals[i]), u + i, kShared, &samples[i - first]);
     };
-    const Wave shared_pdfs = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
+    const Batch shared_pdfs = [&](const LocalBatch& batch, std::size_t first, std::size_t n) {
         for (std::size_t i = first; i < first + n; i += kShared)
-            wavefront.pdf(fast.at(normals[i]), directions_sampled + i, kShared, &densities[i - first]);
+            batch.pdf(fast.at(normals[i]), directions_sampled + i, kShared, &densities[i - first]);
     };
-    const auto of = [&](const Directions& directions) -> Wave {
-        return [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
-            wavefront.pdf(normals + first, reinterpret_cast<const float(*)[3]>(directions.data()) + first, n,
-                          densities.data());
+    const auto of = [&](const Directions& directions) -> Batch {
+        return [&](const LocalBatch& batch, std::size_t first, std::size_t n) {
+            batch.pdf(normals + first, reinterpret_cast<const float(*)[3]>(directions.data()) + first, n,
+                      densities.data());
         };
     };
     const auto full_both = [&](std::size_t i) {
@@ -222,15 +222,15 @@ bool run(const char* path) {
 }
 
 /// N calls many at once; 'r': samples, else densities.
-void count_waves(const LocalWavefront& wavefront, const Questions& q, char what, std::size_t calls) {
-    std::vector<DirectionSample> samples(kWave);
-    std::vector<float> densities(kWave);
-    for (std::size_t first = 0; first < calls; first += kWave) {
-        const std::size_t k = first % kCalls, n = std::min(kWave, calls - first);
+void count_batches(const LocalBatch& batch, const Questions& q, char what, std::size_t calls) {
+    std::vector<DirectionSample> samples(kBatch);
+    std::vector<float> densities(kBatch);
+    for (std::size_t first = 0; first < calls; first += kBatch) {
+        const std::size_t k = first % kCalls, n = std::min(kBatch, calls - first);
         const auto* normals = reinterpret_cast<const float(*)[3]>(q.normals[k].data());
         if (what == 'r')
-            wavefront.sample(normals, reinterpret_cast<const double(*)[2]>(q.wide[k].data()), n, samples.data());
-        else wavefront.pdf(normals, reinterpret_cast<const float(*)[3]>(q.anywhere[k].data()), n, densities.data());
+            batch.sample(normals, reinterpret_cast<const double(*)[2]>(q.wide[k].data()), n, samples.data());
+        else batch.pdf(normals, reinterpret_cast<const float(*)[3]>(q.anywhere[k].data()), n, densities.data());
     }
 }
 
@@ -241,8 +241,8 @@ bool count(char** arguments, const char* how) {
     const Questions q(view);
     const char what = arguments[0][1]; // point, sample, pdf
     const std::size_t calls = std::strtoull(arguments[2], nullptr, 10);
-    if (std::strcmp(how, "waves") == 0) {
-        count_waves(LocalWavefront(view, Instructions::avx2), q, what, calls);
+    if (std::strcmp(how, "batches") == 0) {
+        count_batches(LocalBatch(view, Instructions::avx2), q, what, calls);
         return true;
     }
     for (std::size_t i = 0; i < calls; ++i) {

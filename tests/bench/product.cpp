@@ -1,12 +1,13 @@
-// Time of what acdf/product.h does, beside that of one sample of each strategy with the density of the other, which
-// is what multiple importance sampling pays a sample: bench_product LOCAL.acdf BRDF.acdf
+// Time of what acdf/product/product.h does, beside that of one sample of each strategy with the density of the
+// other, which is what multiple importance sampling pays a sample: bench_product LOCAL.acdf BRDF.acdf
 //
 // Processor time of the thread, the least of some turns in which all take part. Each call has another normal,
 // another view and other random numbers; those of a turn are those of the one before, where nothing else is said.
 #include "measure/samplers/ggx_lobe.h"
 
-#include <acdf/product.h>
+#include <acdf/product/product.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <algorithm>
 #include <cmath>
@@ -81,7 +82,7 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
          std::vector<Timed>& out) {
     using Sampler = ProductSampler<AnyLobe>;
     for (const int parts : {1, 8, 16, 32, 64, 96}) {
-        const Sampler sampler(light, lobe, ProductOptions{parts});
+        const Sampler sampler(light, lobe, ProductOptions{parts, acdf_product_vectors()});
         out.push_back({name + ", `at`, " + std::to_string(parts) + (parts == 1 ? " sub-region" : " sub-regions"),
                        [=, &all] {
                            for (const ShadingPoint& point_ : all)
@@ -89,7 +90,7 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
                        },
                        double{kPoints}});
     }
-    const Sampler sampler(light, lobe, ProductOptions{64});
+    const Sampler sampler(light, lobe, ProductOptions{64, acdf_product_vectors()});
     std::vector<typename Sampler::Point> points;
     for (const ShadingPoint& point_ : all) points.push_back(sampler.at(point_.frame, point_.wo));
     out.push_back({name + ", `sample`, 64 sub-regions",
@@ -186,7 +187,7 @@ int main(int argc, char** argv) {
     const std::vector<ShadingPoint> all = shading_points();
     std::vector<Timed> timed;
     add(light.local().data(), measure::GgxLobe(0.3), "GGX lobe", all, timed);
-    add(light.local().data(), BrdfLobe(brdf.brdf().data()), "BRDF file", all, timed);
+    add(light.local().data(), BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), "BRDF file", all, timed);
     for (int turn = 0; turn < 40; ++turn)
         for (Timed& one : timed) {
             one.run(); // what another one left in the caches is not timed

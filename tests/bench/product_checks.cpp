@@ -1,4 +1,4 @@
-// Checks acdf/product.h at many shading points of real files, and prints a row of a table:
+// Checks acdf/product/product.h at many shading points of real files, and prints a row of a table:
 // product_checks LOCAL.acdf (BRDF.acdf | ALPHA_X ALPHA_Y)
 //
 // Normals and views are random, one view in four grazing, one normal in four where bins of normals meet. Light is
@@ -9,8 +9,9 @@
 // over the squares of the light's grid.
 #include "measure/samplers/ggx_lobe.h"
 
-#include <acdf/product.h>
+#include <acdf/product/product.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <algorithm>
 #include <cmath>
@@ -165,7 +166,7 @@ Counts check(const AcdfLocal& light, const AnyLobe& lobe, int pairs) {
     Random random;
     Counts out;
     for (int i = 0; i < pairs; ++i) {
-        const ProductSampler<AnyLobe> sampler(light, lobe, ProductOptions{i % 2 ? 64 : 8});
+        const ProductSampler<AnyLobe> sampler(light, lobe, ProductOptions{i % 2 ? 64 : 8, acdf_product_vectors()});
         float normal[3], local_wo[3], wo[3], wi[3];
         random.normal(i, normal);
         const SurfaceFrame frame = surface_frame(normal);
@@ -229,7 +230,7 @@ int main(int argc, char** argv) {
     constexpr int pairs = 200;
     const AcdfLocal data = light.local().data();
     const Counts c = lobe ? check(data, measure::GgxLobe(std::atof(argv[2]), std::atof(argv[3])), pairs)
-                          : check(data, BrdfLobe(brdf.brdf().data()), pairs);
+                          : check(data, BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), pairs);
     std::printf("| %d | %.1g | %d | %d | %d |\n", pairs, c.worst_integral, c.disagree, c.violations, c.beyond);
     return c.worst_integral > 1e-4 || c.disagree > 0 || c.violations > 0 || c.beyond > 1 ? 1 : 0;
 }

@@ -1,6 +1,7 @@
-// The waves that tests/bench/python.py is compared with: nanoseconds a call of C++, a million calls over arrays.
+// The batches that tests/bench/python.py is compared with: nanoseconds a call of C++, a million calls over arrays.
+#include <acdf/batch/batch.h>
 #include <acdf/reader.h>
-#include <acdf/wavefront.h>
+#include <acdf/views.h>
 
 #include <cmath>
 #include <cstdio>
@@ -31,9 +32,9 @@ int main(int argc, char** argv) {
     for (int i = 0; i < 3; ++i)
         if (argc != 4 || !acdf::File::open(argv[i + 1], files[i]).ok()) return std::fprintf(stderr, "no file\n"), 1;
     const auto sky = files[0].environment();
-    const acdf::LocalWavefront local(files[1].local());
-    acdf::BrdfWavefront brdf;
-    if (!acdf::BrdfWavefront::prepare(files[2].brdf(), brdf).ok()) return 1;
+    const acdf::LocalBatch local(files[1].local());
+    acdf::BrdfBatch brdf;
+    if (!acdf::BrdfBatch::prepare(files[2].brdf(), brdf).ok()) return 1;
 
     struct Vector {
         float v[3];

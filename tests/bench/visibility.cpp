@@ -18,6 +18,7 @@
 
 #include <acdf/builder.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <tbb/parallel_for.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <acdf/product.h>
+#include <acdf/product/product.h>
 #include <acdf/views.h>
 
 #include <cstdint>

@@ -6,6 +6,7 @@
 
 #include <acdf/moved.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 namespace acdf_cuda {
 

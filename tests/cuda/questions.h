@@ -4,6 +4,7 @@
 #include "calls.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 // BRDFs at their ends: mirrors, nothing but diffuse, light at grazing angles alone, and views that graze.
-#include "tests/lib/reader/waves/brdf.h"
+#include "tests/lib/batch/brdf.h"
 #include "tests/inputs/brdf_files.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
@@ -109,8 +109,8 @@ TEST_P(ExtremeBrdfs, SamplesAreSoundForEveryView) {
         }
 }
 
-TEST_P(ExtremeBrdfs, WavefrontsAreTheSameBitForBit) {
-    expect_wavefront_is_the_view(brdf_->view(), std::size_t(repeated(20000)));
+TEST_P(ExtremeBrdfs, BatchesAreTheSameBitForBit) {
+    expect_batch_is_the_view(brdf_->view(), std::size_t(repeated(20000)));
 }
 
 TEST_P(ExtremeBrdfs, EstimatesHaveTheRightMean) {

@@ -3,6 +3,7 @@
 #include "tests/extremes/fast_math.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 #include "build/accuracy/environment.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

@@ -11,6 +11,7 @@
 #include "compress/sum.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

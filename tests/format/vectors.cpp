@@ -1,6 +1,7 @@
 // The test vectors of format/vectors against the reader, number by number: it made them, and it has to stay as it
 // was.
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 #include "tests/fuzz/sample_file.h"
 
 #include "tests/fuzz/require.h"
-#include "tests/fuzz/sample_waves.h"
+#include "tests/fuzz/sample_batches.h"
 
 #include <acdf/acdf.h>
-#include <acdf/shader_tables.h>
+#include <acdf/shader/tables.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -86,7 +86,7 @@ void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom& rando
         if (s.pdf == 0.0f) continue;
         require(is_unit(s.direction) && view.pdf(normal, s.direction) > 0.0f);
     }
-    wavefront_is_the_view(view, random);
+    batch_is_the_view(view, random);
     product_at_once_is_the_product(view, random);
     sample_everything(view.environment(), random);
 }
@@ -105,7 +105,7 @@ void sample_everything(const acdf::BrdfView& view, FuzzRandom& random) {
         if (view.invert(wo, s.direction, u)) require(in_unit_square(u));
         if (view.invert(wo, any, u)) require(in_unit_square(u));
     }
-    wavefront_is_the_view(view, random);
+    batch_is_the_view(view, random);
 }
 
 void sample_everything(const acdf::TableView& view, FuzzRandom& random) {

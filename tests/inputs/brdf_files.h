@@ -4,6 +4,7 @@
 #include "build/brdf.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

@@ -11,6 +11,7 @@
 #include "input/probe/probe.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

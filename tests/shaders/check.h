@@ -1,7 +1,8 @@
-// What a device answers by the exported functions (acdf/shader_walk.h, acdf/shader_brdf.h), beside the reader.
+// What a device answers by the exported functions (acdf/shader/walk.h, acdf/shader/brdf.h), beside the reader.
 #pragma once
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cstddef>
 #include <string>

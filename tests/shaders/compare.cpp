@@ -10,6 +10,7 @@
 #include "tests/shaders/check.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "tests/tools/run.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <nlohmann/json.hpp>
 

@@ -241,6 +241,8 @@ TEST_F(Commands, InfoOfHalvings) {
     ASSERT_EQ(result.code, 0) << result.err;
     const json report = json::parse(result.out);
     EXPECT_EQ(report["bytes"], small_halvings().size());
+    EXPECT_GT(report["table_bytes"], 0);
+    EXPECT_EQ(report["memory_bytes"], report["bytes"].get<int>() + report["table_bytes"].get<int>());
     EXPECT_EQ(report["bins"], 1);
     EXPECT_EQ(report["cells"], 3);
     EXPECT_EQ(report["curves"], 0);
@@ -250,6 +252,7 @@ TEST_F(Commands, InfoOfHalvings) {
     const Result people = run_acdf({"info", sky});
     ASSERT_EQ(people.code, 0) << people.err;
     EXPECT_NE(people.out.find("3 cells"), std::string::npos) << people.out;
+    EXPECT_NE(people.out.find("are tables made when it is opened"), std::string::npos) << people.out;
 }
 
 TEST_F(Commands, InfoOfSeveralFilesIsAnArrayAndABadOneIsTold) {

@@ -2,7 +2,7 @@
 // devices (tests/shaders).
 #include "tests/tools/run.h"
 
-#include <acdf/shader_tables.h>
+#include <acdf/shader/tables.h>
 
 #include <nlohmann/json.hpp>
 

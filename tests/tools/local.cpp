@@ -5,6 +5,7 @@
 #include "tests/tools/run.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <nlohmann/json.hpp>
 
@@ -86,7 +87,7 @@ TEST_F(LocalCommand, OfAPartnerTellsIt) {
 }
 
 TEST_F(LocalCommand, TellsWhatMeasureTells) {
-    const json report = made({"--budget", "40kB"});
+    const json report = made({"--budget", "40kB", "--filter", "nearest"});
     EXPECT_LE(report["bytes"], 40000);
     EXPECT_EQ(report["bytes"], std::filesystem::file_size(output));
     EXPECT_EQ(report["support_violations"], 0);
@@ -129,8 +130,8 @@ TEST_F(LocalCommand, CompressedTreesOfTheirOwnKeepTheirBudget) {
 
 TEST_F(LocalCommand, ScenesAreRead) {
     write_text(folder / "normals.txt", "0 0 1\n0.1 0 1 3\n# a remark\n");
-    const json all = made({"--budget", "40kB"}),
-               scene = made({"--budget", "40kB", "--scene", folder / "normals.txt"});
+    const json all = made({"--budget", "40kB", "--filter", "nearest"}),
+               scene = made({"--budget", "40kB", "--filter", "nearest", "--scene", folder / "normals.txt"});
     EXPECT_NE(messages.find("a list with 2 different normals"), std::string::npos) << messages;
     EXPECT_LT(scene["relative_variance"], all["relative_variance"]);
     const auto measured = [&](const std::vector<std::string>& more) {

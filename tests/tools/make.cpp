@@ -4,6 +4,7 @@
 
 #include <acdf/reader.h>
 #include <acdf/renderers.h>
+#include <acdf/views.h>
 
 #include <nlohmann/json.hpp>
 

@@ -16,8 +16,8 @@ namespace acdf::tools {
 /// What differs from kind to kind.
 struct GoalTexts {
     const char* cells;          ///< what --cells counts
-    const char* cells_default;  ///< "N [4096]"
-    const char* budget_default; ///< "SIZE", or with a default
+    const char* cells_default;  ///< "N"
+    const char* budget_default; ///< "SIZE [64KiB]"
     const char* variance_of;    ///< behind "at most this relative variance"
     std::uint32_t least_cells = 1, most_cells = 1u << 28;
 };

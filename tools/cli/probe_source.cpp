@@ -80,8 +80,9 @@ Note notes_of(const std::string& path, bool quiet) {
     };
 }
 
-builder::Target probe_target(const std::string& path, const input::Probe& probe,
-                             const builder::TargetOptions& options) {
+builder::Target probe_texels(const std::string& path, const input::Probe& probe) {
+    builder::TargetOptions options;
+    options.filter = ACDF_FILTER_NEAREST;
     return lit(path, probe, [&] {
         builder::TargetRows rows(options);
         if (probe.luminance) rows.set_luminance(*probe.luminance);
@@ -188,20 +189,24 @@ input::ProbeOptions options_as_made(const input::ProbeOptions& given, const File
 } // namespace
 
 ProbeTarget source_target(const std::string& path, const File& file, const std::string& source,
-                          const input::ProbeOptions& given, bool quiet) {
+                          const input::ProbeOptions& given, bool quiet, std::optional<AcdfFilter> filter) {
     const input::ProbeOptions options = options_as_made(given, file, source);
     const build::Domain grid{static_cast<AcdfParameterization>(file.description().parameterization),
                              file.axis(0).resolution, file.axis(1).resolution};
-    ProbeTarget out =
-        load(source, options, builder::TargetRows(stored_options(file), {}, grid), notes_of(source, quiet));
+    builder::TargetOptions target = stored_options(file);
+    target.filter = filter.value_or(target.filter);
+    ProbeTarget out = load(source, options, builder::TargetRows(target, {}, grid), notes_of(source, quiet));
     if (!quiet) note_another(path, file, source, out.probe.source_sha256);
     return out;
 }
 
-ProbeTarget latlong_target(const File& file, const std::string& source, const input::ProbeOptions& given) {
+ProbeTarget latlong_target(const File& file, const std::string& source, const input::ProbeOptions& given,
+                           std::optional<AcdfFilter> filter) {
     input::ProbeOptions options = options_as_made(given, file, source);
     options.domain = input::Domain::latlong;
-    return load_target(source, options, stored_options(file), notes_of(source, true));
+    builder::TargetOptions target = stored_options(file);
+    target.filter = filter.value_or(target.filter);
+    return load_target(source, options, target, notes_of(source, true));
 }
 
 std::string resampling_warning(const ProbeTarget& target, double least_variance, double relative_variance) {

@@ -5,8 +5,10 @@
 #include "input/probe/probe.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace acdf::tools {
@@ -17,9 +19,8 @@ builder::Source source_of(const input::Probe& probe, const input::ProbeOptions& 
 /// Options of reading in one spelling (build/text/options.h): "--projection angular --domain latlong ", or empty.
 std::string reading_text(const input::ProbeOptions& options);
 
-/// The target of a probe. Throws Failure, naming `path`, where it has no energy.
-builder::Target probe_target(const std::string& path, const input::Probe& probe,
-                             const builder::TargetOptions& options = {});
+/// The texels of a probe, as targets of nearest lookup. Throws Failure, naming `path`, where it has no energy.
+builder::Target probe_texels(const std::string& path, const input::Probe& probe);
 
 /// Called with what a user should know of a source: one line without a file's name.
 using Note = std::function<void(const std::string&)>;
@@ -50,13 +51,14 @@ builder::TargetOptions stored_options(const File& file);
 
 /// What a renderer that looks `source` up integrates, on the grid of a file: what that says of channels and filter.
 /// The source may have any layout and resolution; the projection or the faces that the file was made with need not
-/// be given again where this is its very source. Tells on stderr, unless `quiet`, where it is another file than the
-/// file was made from.
+/// be given again where this is its very source. `filter`: of another lookup than the file was made for. Tells on
+/// stderr, unless `quiet`, where it is another file than the file was made from.
 ProbeTarget source_target(const std::string& path, const File& file, const std::string& source,
-                          const input::ProbeOptions& options, bool quiet);
+                          const input::ProbeOptions& options, bool quiet, std::optional<AcdfFilter> filter = {});
 
 /// The same on a lat-long grid, whatever the file's.
-ProbeTarget latlong_target(const File& file, const std::string& source, const input::ProbeOptions& options);
+ProbeTarget latlong_target(const File& file, const std::string& source, const input::ProbeOptions& options,
+                           std::optional<AcdfFilter> filter = {});
 
 /// One line where resampling is the larger part of a file's variance; else empty.
 std::string resampling_warning(const ProbeTarget& target, double least_variance, double relative_variance);

@@ -4,6 +4,7 @@
 #include "tools/cli/comma_list.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <CLI/CLI.hpp>
 

@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace acdf::tools {
@@ -31,16 +32,23 @@ inline void add_channels(CLI::App& command, builder::Channels& channels, const c
         ->group("Fit");
 }
 
+/// How a renderer looks a map up; `into`: as of add_choice.
+template <class Into>
+CLI::Option* add_filter(CLI::App& command, Into&& into, const char* help) {
+    constexpr Named<AcdfFilter> filters[] = {{"nearest", ACDF_FILTER_NEAREST}, {"bilinear", ACDF_FILTER_BILINEAR}};
+    return add_choice(command, "--filter", std::forward<Into>(into), filters, help);
+}
+
 inline void add_target_options(CLI::App& command, builder::TargetOptions& target) {
     add_channels(
         command, target.channels,
         "Whose noise is minimised: luminance (Rec. 709), rgb (the sum over the three channels: for strongly "
         "coloured lights), max (the largest channel), average (all alike), red, green or blue alone");
-    constexpr Named<AcdfFilter> filters[] = {{"nearest", ACDF_FILTER_NEAREST}, {"bilinear", ACDF_FILTER_BILINEAR}};
-    add_choice(command, "--filter", target.filter, filters,
-               "How your renderer looks the map up: nearest or bilinear. Set it right: a lookup that blends light "
-               "into dark texels finds light where a nearest fit has none, which is bias")
-        ->option_text("NAME [nearest]")
+    add_filter(command, target.filter,
+               "How your renderer looks the map up: bilinear, or nearest. A bilinear file serves nearest lookups, "
+               "too, with a little more noise; a nearest file is biased under bilinear lookups, which blend light "
+               "into dark texels")
+        ->option_text("NAME [bilinear]")
         ->group("Fit");
     constexpr Named<builder::Wrap> wraps[] = {{"clamp", builder::Wrap::clamp}, {"repeat", builder::Wrap::repeat}};
     add_choice(command, "--wrap", target.wrap, wraps,

@@ -52,7 +52,7 @@ void show_probe(const DemoArguments& options, const std::string& probe, const st
     };
     for (const char* fit : {"uniform", "cdf", "pdf"})
         with_force({"env", probe, "-o", stem + "." + fit + ".acdf", "--fit", fit, "--knots", "64x64"});
-    with_force({"env", probe, "-o", stem + ".acdf", "--cells", "4096"});
+    with_force({"env", probe, "-o", stem + ".acdf"});
     run_command({"info", stem + ".acdf"});
     run_command({"validate", stem + ".acdf"});
     run_command({"measure", stem + ".acdf", "--against", probe});

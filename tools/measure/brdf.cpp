@@ -12,6 +12,7 @@
 #include "tools/cli/noise.h"
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
+#include "tools/measure/memory.h"
 
 #include <nlohmann/json.hpp>
 
@@ -75,6 +76,7 @@ nlohmann::ordered_json report(const std::string& path, const File& file, const s
             {"support_violations", a.support_violations},
             {"views", a.views},
             {"bytes", file.size()},
+            {"memory_bytes", measure::memory_of(file)},
             {"cells", a.cells},
             {"bins", file.description().bin_count},
             {"total", file.description().total}};
@@ -102,7 +104,7 @@ void print_text(const std::string& path, const File& file, const std::string& so
     std::printf("  samples above horizon  %.6g\n", a.share_above_horizon);
     std::printf("  support violations     %" PRIu64 "\n", a.support_violations);
     std::printf("  bins, cells            %" PRIu32 ", %" PRIu64 "\n", file.description().bin_count, a.cells);
-    std::printf("  bytes                  %" PRIu64 "\n", file.size());
+    print_bytes(file);
 }
 
 } // namespace

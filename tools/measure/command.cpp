@@ -12,9 +12,11 @@
 #include "tools/cli/probe_source.h"
 #include "tools/cli/scene_option.h"
 #include "tools/cli/source_check.h"
+#include "tools/cli/target_options.h"
 #include "tools/commands.h"
 #include "tools/measure/brdf.h"
 #include "tools/measure/local.h"
+#include "tools/measure/memory.h"
 #include "tools/measure/table.h"
 
 #include <CLI/CLI.hpp>
@@ -25,6 +27,7 @@
 #include <cstdio>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 
 namespace acdf::tools {
 namespace {
@@ -36,6 +39,7 @@ struct MeasureArguments {
     std::string mesh;
     input::UpAxis up = input::UpAxis::z;
     const CLI::App* command = nullptr;
+    std::optional<AcdfFilter> filter;
     bool baselines = false, json = false, quiet = false;
 };
 
@@ -60,6 +64,7 @@ nlohmann::ordered_json report(const MeasureArguments& options, const File& file,
         {"resampling_error", measured.error},
         {"support_violations", a.support_violations},
         {"bytes", file.size()},
+        {"memory_bytes", measure::memory_of(file)},
         {"cells", a.cells},
         {"bins", file.description().bin_count},
         {"total", a.total}};
@@ -78,7 +83,7 @@ void print_text(const MeasureArguments& options, const File& file, const Measure
         std::printf("  largest weight         %.6g   f over the combined density, over its mean\n", a.max_weight);
         std::printf("  support violations     %" PRIu64 "   of both together\n", a.support_violations);
         std::printf("  cells                  %" PRIu64 "\n", a.cells);
-        std::printf("  bytes                  %" PRIu64 "\n", file.size());
+        print_bytes(file);
         return;
     }
     std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
@@ -97,7 +102,7 @@ void print_text(const MeasureArguments& options, const File& file, const Measure
     std::printf("  KL divergence          %.6g   nats\n", a.kl_divergence);
     std::printf("  support violations     %" PRIu64 "\n", a.support_violations);
     std::printf("  cells                  %" PRIu64 "\n", a.cells);
-    std::printf("  bytes                  %" PRIu64 "\n", file.size());
+    print_bytes(file);
 }
 
 /// An option that has no say for a kind is a mistake of whoever gave it.
@@ -111,7 +116,7 @@ void refuse_options_of_other_kinds(const MeasureArguments& options, AcdfKind kin
     if (kind != ACDF_KIND_TABLE) refuse({"--mis"}, "tables");
     if (kind != ACDF_KIND_BRDF) refuse({"--views"}, "BRDFs");
     if (kind == ACDF_KIND_TABLE || kind == ACDF_KIND_BRDF)
-        refuse({"--projection", "--bad-pixels", "--on-black"}, "environments");
+        refuse({"--projection", "--bad-pixels", "--on-black", "--filter"}, "environments");
 }
 
 void run(const MeasureArguments& options) {
@@ -128,16 +133,16 @@ void run(const MeasureArguments& options) {
     case ACDF_KIND_LOCAL:
         if (!loaded.file.local().has_visibility() && options.command->get_option("--points")->count() > 0)
             throw CLI::ValidationError("--points", "is for files that store visibility cells");
-        return measure_local(loaded.file,
-                             {options.file, options.source, options.input, options.normals, options.mesh,
-                              options.up, options.points, options.baselines, options.json, options.quiet});
+        return measure_local(loaded.file, {options.file, options.source, options.input, options.normals,
+                                           options.mesh, options.up, options.points, options.baselines,
+                                           options.json, options.quiet, options.filter});
     default:
         break;
     }
     if (loaded.file.kind() != ACDF_KIND_ENVIRONMENT)
         fail_kind(options.file, loaded.file, "measure", "files of every other kind");
     const ProbeTarget source =
-        source_target(options.file, loaded.file, options.source, options.input, options.quiet);
+        source_target(options.file, loaded.file, options.source, options.input, options.quiet, options.filter);
     const compress::Target& target = builder::grid_of(source.target);
     const Measured measured{build::measure_environment(loaded.file, target),
                             measure::full_cdf_relative_variance(target), source.error};
@@ -182,6 +187,12 @@ void add_measure(CLI::App& program, int& exit_code) {
     add_projection(command, options->input.projection);
     add_faces(command, options->input.faces);
     add_repairs(command, options->input);
+    add_filter(
+        command, [options](AcdfFilter filter) { options->filter = filter; },
+        "Another lookup than the file was made for: how noisy it is for a renderer that looks the probe up so. A "
+        "file for nearest lookups may be biased under a bilinear one, which is an error")
+        ->option_text("NAME [as the file was made]")
+        ->group("Input");
     command
         .add_option("--normals", options->normals, "Of a local environment: random normals to take the mean over")
         ->check(CLI::Range(1u, 1u << 20))

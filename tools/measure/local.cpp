@@ -17,6 +17,7 @@
 #include "tools/cli/noise.h"
 #include "tools/cli/probe_source.h"
 #include "tools/commands.h"
+#include "tools/measure/memory.h"
 
 #include <nlohmann/json.hpp>
 
@@ -169,6 +170,7 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
         {"max_weight", a.max_weight},
         {"support_violations", a.support_violations},
         {"bytes", file.size()},
+        {"memory_bytes", measure::memory_of(file)},
         {"cells", count_cells(file)},
         {"bins", file.description().bin_count},
         {"total", file.description().total},
@@ -209,7 +211,7 @@ void print_text(const File& file, const LocalMeasureOptions& options, const Loca
     std::printf("  without a normal       %.6g   relative variance of environment(), used alone\n",
                 measured.whole.relative_variance);
     std::printf("    largest weight       %.6g\n", measured.whole.max_weight);
-    std::printf("  bytes                  %" PRIu64 "\n", file.size());
+    print_bytes(file);
     for (const Baseline& baseline : measured.baselines)
         std::printf("  %-30s relative variance %.6g, %" PRIu64 " bytes\n", baseline.text,
                     baseline.relative_variance, baseline.bytes);
@@ -221,19 +223,20 @@ void print_text(const File& file, const LocalMeasureOptions& options, const Loca
 void measure_local(const File& file, const LocalMeasureOptions& options) {
     const bool mesh = !options.mesh.empty() && file.local().has_visibility();
     if (mesh && file.partner()) throw Failure(options.file + ": is made for an MIS partner; leave out --scene");
-    const ProbeTarget source = source_target(options.file, file, options.source, options.input, options.quiet);
+    const ProbeTarget source =
+        source_target(options.file, file, options.source, options.input, options.quiet, options.filter);
     const std::vector<build::Normal> normals = normals_of(options, !mesh && !options.mesh.empty());
     LocalMeasured measured;
     measured.normals = build::summary(build::measure_normals(file, builder::grid_of(source.target), normals));
     measured.whole = build::measure_whole(file, builder::grid_of(source.target));
     compress::Target map;
     if (options.baselines)
-        measured.baselines = baselines_of(compress::looked_up(builder::grid_of(source.target), map), normals);
+        measured.baselines = baselines_of(compress::of_texels(builder::grid_of(source.target), map), normals);
     if (mesh) { // whose points see lat-long texels
         const bool square = builder::grid_of(source.target).parameterization == ACDF_PARAM_OCTAHEDRAL;
         const builder::Target light =
-            square ? latlong_target(file, options.source, options.input).target : source.target;
-        measured.visibility = measure_visibility(file, options, compress::looked_up(builder::grid_of(light), map));
+            square ? latlong_target(file, options.source, options.input, options.filter).target : source.target;
+        measured.visibility = measure_visibility(file, options, compress::of_texels(builder::grid_of(light), map));
     }
     if (options.json) std::fputs(json_text(report(file, options, measured)).c_str(), stdout);
     else print_text(file, options, measured);

@@ -5,8 +5,10 @@
 #include "input/probe/probe.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace acdf::tools {
@@ -20,6 +22,7 @@ struct LocalMeasureOptions {
     input::UpAxis up = input::UpAxis::z;
     std::uint32_t points = 64; ///< on the mesh
     bool baselines = false, json = false, quiet = false;
+    std::optional<AcdfFilter> filter; ///< of another lookup than the file was made for
 };
 
 /// Compares a local environment file with its probe over random normals, or a scene's, and with what a renderer

@@ -9,6 +9,7 @@
 #include "input/sha256.h"
 #include "tools/cli/noise.h"
 #include "tools/commands.h"
+#include "tools/measure/memory.h"
 
 #include <CLI/Error.hpp>
 #include <nlohmann/json.hpp>
@@ -51,6 +52,7 @@ nlohmann::ordered_json report(const std::string& path, const File& file, const s
         {"max_weight", a.max_weight},
         {"support_violations", a.support_violations},
         {"bytes", file.size()},
+        {"memory_bytes", measure::memory_of(file)},
         {"cells", a.cells},
         {"bins", file.description().bin_count},
         {"bins_with_energy", a.lit_bins},
@@ -80,7 +82,7 @@ void print_text(const std::string& path, const File& file, const std::string& so
     std::printf("  bins                   %" PRIu32 "   of %" PRIu32 " have energy\n", a.lit_bins,
                 file.description().bin_count);
     std::printf("  cells                  %" PRIu64 "\n", a.cells);
-    std::printf("  bytes                  %" PRIu64 "\n", file.size());
+    print_bytes(file);
 }
 
 /// The table at `source`, which has the shape of the file.

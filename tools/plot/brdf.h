@@ -4,6 +4,7 @@
 #include "tools/plot/density.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <optional>
 #include <string>

@@ -5,6 +5,7 @@
 #include "input/normals/scene.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <array>
 #include <optional>

@@ -6,6 +6,7 @@
 #include "tools/cli/progress.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <functional>
 #include <vector>

@@ -7,6 +7,7 @@
 #include "tools/plot/density.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cstdint>
 #include <functional>

@@ -5,6 +5,7 @@
 #include "tools/plot/density.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <array>
 #include <optional>

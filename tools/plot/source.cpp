@@ -144,7 +144,7 @@ void load_stored(const PlotArguments& options, Plotted& source) {
 
 void load_image(const PlotArguments& options, Plotted& source) {
     const input::Probe probe = load_probe(options.file, options.input, options.quiet);
-    source.target = probe_target(options.file, probe);
+    source.target = probe_texels(options.file, probe);
     source.density = pdf_of(builder::grid_of(source.target));
     source.columns = source.target.columns();
     source.rows = source.target.rows();

@@ -147,13 +147,15 @@ std::vector<const input::Brdf*> brdfs_of(const LoadedScene& scene) {
     return out;
 }
 
-builder::Target light_target(const RenderArguments& options, const input::Probe& probe) {
+builder::Target light_target(const RenderArguments& options, const input::Probe& probe, AcdfFilter filter) {
     builder::Pixels pixels;
     pixels.data = probe.rgb.data();
     pixels.width = static_cast<std::uint32_t>(probe.width);
     pixels.height = static_cast<std::uint32_t>(probe.height);
+    builder::TargetOptions how;
+    how.filter = filter;
     builder::Target target;
-    const builder::Status status = builder::Target::from(pixels, {}, target);
+    const builder::Status status = builder::Target::from(pixels, how, target);
     if (status.code == builder::ErrorCode::no_energy) throw Failure(options.scene + ": light: the probe is black");
     if (!status.ok()) throw Failure(options.scene + ": light: " + status.message);
     return target;
@@ -167,7 +169,7 @@ RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, s
     run.options.samples = scene.file.samples;
     run.options.reference = !options.no_reference;
     run.options.timing = !options.no_timing;
-    const builder::Target target = light_target(options, scene.probe);
+    const builder::Target target = light_target(options, scene.probe, scene.file.filter);
     std::vector<builder::SceneNormal> normals;
     for (const measure::ScenePoint& point : scene.points.points) {
         const float* n = point.shading().n;

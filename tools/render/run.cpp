@@ -1,6 +1,7 @@
 #include "tools/render/run.h"
 
 #include "compress/sum.h"
+#include "compress/target.h"
 #include "measure/scenes/reference.h"
 #include "tools/demo/probes.h"
 #include "tools/render/sampler_build.h"
@@ -39,6 +40,17 @@ std::string brdf_source(const std::string& brdf, const std::string& data) {
     std::error_code ignored;
     return std::filesystem::exists(path, ignored) ? path.string()
                                                   : brdf; // else a model's text, or open_brdf complains
+}
+
+/// Of interpolated radiance, over each texel.
+std::vector<float> texel_means(const measure::ProbeLight& light) {
+    const compress::Target moments =
+        compress::environment_target(light.rgb, light.columns, light.rows,
+                                     {{1.0, 1.0, 1.0}, ACDF_CHANNELS_SEPARATE, light.filter, ACDF_PARAM_LATLONG});
+    std::vector<float> out(3 * moments.values.size());
+    for (std::size_t i = 0; i < moments.values.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k) out[3 * i + k] = moments.means[k][i];
+    return out;
 }
 
 double luminance_mean(const std::vector<measure::Rgb>& values) {
@@ -155,7 +167,11 @@ std::unique_ptr<LoadedScene> load_scene(const SceneFile& file, const std::string
     out->scene.width = file.width;
     out->scene.height = file.height;
     out->scene.light = {static_cast<std::uint32_t>(out->probe.width), static_cast<std::uint32_t>(out->probe.height),
-                        out->probe.rgb.data()};
+                        out->probe.rgb.data(), file.filter};
+    if (file.filter != ACDF_FILTER_NEAREST) {
+        out->means = texel_means(out->scene.light);
+        out->scene.light.means = out->means.data();
+    }
     out->points = measure::visible_points(out->scene);
     if (out->points.points.empty()) throw SceneError("camera: it sees no object");
     return out;

@@ -22,6 +22,7 @@ struct LoadedScene {
     SceneFile file;
     input::Probe probe;
     std::vector<std::unique_ptr<input::Brdf>> brdfs; ///< one a material
+    std::vector<float> means; ///< of the light over each texel, as the probe's pixels; empty: those
     measure::Scene scene;
     measure::ScenePoints points;
 

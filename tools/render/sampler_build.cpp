@@ -127,6 +127,12 @@ Table given_file(const std::string& path) {
     throw SpecError("sampler '" + spec.text + "': there is no scene to look from");
 }
 
+/// As samplers of texels see them, which stay as long as these.
+compress::Target texels_of(const compress::Target& target) {
+    compress::Target other;
+    return compress::of_texels(target, other);
+}
+
 bool knows_brdf(const SamplerSpec& spec) {
     if (spec.kind != SamplerKind::mis && !spec.parts.empty()) return knows_brdf(spec.parts.back());
     return spec.kind == SamplerKind::brdf || spec.kind == SamplerKind::brdf_table;
@@ -143,7 +149,7 @@ bool is_ours(const SamplerSpec& spec) {
 
 struct SamplerBuilder::Store {
     builder::Target fitted;
-    const compress::Target& target; ///< of it
+    compress::Target target; ///< its texels
     std::vector<const input::Brdf*> brdfs;
     std::string data;
     std::vector<builder::SceneNormal> normals;
@@ -316,7 +322,7 @@ SamplerBuilder::SamplerBuilder(const builder::Target& target, std::vector<const 
                                std::string data, std::vector<builder::SceneNormal> normals,
                                const measure::Geometry* geometry, const std::vector<measure::ScenePoint>* points)
     : store_(new Store{target,
-                       builder::grid_of(target),
+                       texels_of(builder::grid_of(target)),
                        std::move(brdfs),
                        std::move(data),
                        std::move(normals),

@@ -3,7 +3,7 @@
 #include "tools/cli/mis_text.h"
 #include "tools/cli/sizes.h"
 
-#include <acdf/cut.h>
+#include <acdf/product/cut.h>
 
 #include <algorithm>
 #include <cctype>
@@ -35,10 +35,10 @@ constexpr Name names[] = {
     {"visibility-cache", SamplerKind::visibility_cache, "32x16"},
     {"portals", SamplerKind::portals, "light"},
     {"env", SamplerKind::env, "64KiB"},
-    {"local", SamplerKind::local, "1MB"},
-    {"visibility", SamplerKind::visibility, "4MB"},
-    {"visibility-portals", SamplerKind::visibility_portals, "4MB"},
-    {"brdf", SamplerKind::brdf, "64KiB"},
+    {"local", SamplerKind::local, "1MiB"},
+    {"visibility", SamplerKind::visibility, "4MiB"},
+    {"visibility-portals", SamplerKind::visibility_portals, "4MiB"},
+    {"brdf", SamplerKind::brdf, "128KiB"},
     {"brdf-table", SamplerKind::brdf_table, "mean"},
     {"ggx", SamplerKind::ggx, "0.1"},
     {"alias", SamplerKind::alias, nullptr},

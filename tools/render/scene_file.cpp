@@ -1,5 +1,6 @@
 #include "tools/render/scene_file.h"
 
+#include "build/text/format_names.h"
 #include "tools/render/scene_json.h"
 
 #include <algorithm>
@@ -140,11 +141,19 @@ input::Projection projection(const JsonValue& value) {
     value.fail("is no projection: auto, latlong, angular, mirrorball, cube-cross, octahedral");
 }
 
+AcdfFilter filter(const JsonValue& value) {
+    const std::string text = value.text();
+    for (const AcdfFilter f : {ACDF_FILTER_NEAREST, ACDF_FILTER_BILINEAR})
+        if (text == build::filter_name(f)) return f;
+    value.fail("is no filter: nearest, bilinear");
+}
+
 void read_light(const JsonValue& value, SceneFile& scene) {
     JsonObject object(value);
     object.if_has("probe", [&](const JsonValue& probe) { scene.probe = probe.text(); });
     object.if_has("built_in", [&](const JsonValue& name) { scene.built_in = name.text(); });
     object.if_has("projection", [&](const JsonValue& p) { scene.projection = projection(p); });
+    object.if_has("filter", [&](const JsonValue& f) { scene.filter = filter(f); });
     object.finish();
     if (scene.probe.empty() == scene.built_in.empty()) value.fail("needs one of 'probe' and 'built_in'");
 }

@@ -40,6 +40,7 @@ struct SceneFile {
     std::string probe;    ///< a file, relative to the data folder, or
     std::string built_in; ///< the name of one of demo_probes()
     input::Projection projection = input::Projection::automatic;
+    AcdfFilter filter = ACDF_FILTER_BILINEAR; ///< how the light is looked up
     std::uint32_t width = 96, height = 72;
     std::uint32_t samples = 20; ///< of each estimate
     std::vector<std::string> samplers;

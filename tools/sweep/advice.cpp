@@ -37,7 +37,7 @@ bool tried_larger(const Sweep& sweep, const SweepRow& best) {
 std::string sentence_of(const Sweep& sweep, const Recommended& recommended) {
     const SweepRow& best = sweep.rows[recommended.row];
     const VisibleNoise& v = sweep.visible;
-    const std::string size = to_readable_size(best.bytes);
+    const std::string size = size_text(best);
     const double variance = variance_in(best, open_alone, sweep.numbers);
     std::string has = "a relative variance of " + short_number(variance) + ", " + noise_text(variance, v.spp) +
                       " noise at " + spp_text(v);
@@ -56,8 +56,8 @@ std::string picture_sentence(const Sweep& sweep, const Recommended& recommended)
     const auto noise = [&](const SweepRow& row) {
         return noise_text(variance_in(row, open_alone, sweep.numbers), v.spp);
     };
-    std::string text = to_readable_size(best.bytes) + " is enough: a diffuse surface has " + noise(best) +
-                       " noise with it at " + spp_text(v) + ", and " + noise(full) + " with the " + full.label;
+    std::string text = size_text(best) + " is enough: a diffuse surface has " + noise(best) + " noise with it at " +
+                       spp_text(v) + ", and " + noise(full) + " with the " + full.label;
     if (recommended.reached) return text + ", which cannot be seen.";
     return text + "; no other size or fit tried lowers it by more than 5 %.";
 }
@@ -65,7 +65,8 @@ std::string picture_sentence(const Sweep& sweep, const Recommended& recommended)
 std::string picture_rule(const Sweep& sweep) {
     const VisibleNoise& v = sweep.visible;
     std::string text =
-        "Rule: the smallest file tried, or one of up to a quarter more bytes with less noise, whose noise on a "
+        "Rule: the file tried that takes least memory, or one of up to a quarter more with less noise, whose noise "
+        "on a "
         "diffuse surface is at most 5 % above the least of "
         "all files, or at most " +
         percent(v.threshold) + " at " + spp_text(v) +
@@ -80,9 +81,9 @@ std::string picture_rule(const Sweep& sweep) {
 
 std::string rule_of(const Sweep& sweep) {
     const VisibleNoise& v = sweep.visible;
-    std::string text =
-        "Rule: the smallest file tried whose noise, the standard deviation sqrt(relative variance / " +
-        std::to_string(v.spp) + ") of a pixel, is at most " + percent(v.threshold) + " of its value";
+    std::string text = "Rule: the file tried that takes least memory and whose noise, the standard deviation "
+                       "sqrt(relative variance / " +
+                       std::to_string(v.spp) + ") of a pixel, is at most " + percent(v.threshold) + " of its value";
     if (v.threshold == 0.01) text += ": about half a step of 8-bit sRGB at middle grey";
     text += ". In numbers: a relative variance of at most " + short_number(v.largest_variance()) + ".";
     if (sweep.numbers == measure::Numbers::sobol)
@@ -125,7 +126,8 @@ std::string named(const Sweep& sweep, const Advice& advice, Verdict verdict) {
 /// Who wins at equal time; a sentence for each way it can end.
 void add_time_findings(const Sweep& sweep, Advice& advice, const SweepRow& best) {
     const std::string than = " Figures are the baseline's variance over that of the " +
-                             to_readable_size(best.bytes) + " file after the same time, of which a sample takes " +
+                             to_readable_size(best.file_bytes > 0 ? best.file_bytes : best.bytes) +
+                             " file after the same time, of which a sample takes " +
                              short_number(sweep.costs.shadow_ray_ns) + " ns beside its sampling.";
     const std::string baselines = named(sweep, advice, Verdict::baseline),
                       even = named(sweep, advice, Verdict::even), ours = named(sweep, advice, Verdict::ours);
@@ -170,7 +172,7 @@ void add_own_finding(const Sweep& sweep, Advice& advice) {
     if (!fastest.equal_time.known()) return;
     const SweepRow& row = sweep.rows[fastest.row];
     advice.findings.push_back("Where time counts more than size: " + row.label + ", `" + row.options + "`, " +
-                              to_readable_size(row.bytes) + ", has " + interval_text(fastest.equal_time) +
+                              size_text(row) + ", has " + interval_text(fastest.equal_time) +
                               " times the variance of the recommended file at equal time.");
 }
 
@@ -202,6 +204,11 @@ void add_findings(const Sweep& sweep, Advice& advice) {
 }
 
 } // namespace
+
+std::string size_text(const SweepRow& row) {
+    if (row.file_bytes == 0) return to_readable_size(row.bytes);
+    return to_readable_size(row.file_bytes) + " (" + to_readable_size(row.bytes) + " in memory)";
+}
 
 std::string short_number(double value) {
     if (std::isinf(value)) return "infinite";

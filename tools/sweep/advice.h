@@ -36,6 +36,9 @@ Advice advise(const Sweep& sweep);
 /// Quoted for a shell where that is needed.
 std::string shell_word(const std::string& word);
 
+/// Of a file, and of what it takes in memory: "64 KiB (144 KiB in memory)"; of a baseline the latter alone.
+std::string size_text(const SweepRow& row);
+
 /// Three significant digits, as text for people: "0.0041", "12.3", "1230", "infinite".
 std::string short_number(double value);
 } // namespace acdf::tools

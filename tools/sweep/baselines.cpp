@@ -23,28 +23,31 @@ using measure::ShadingPoint;
 struct LightAccuracy {
     double relative_variance = 0.0, max_weight = 0.0, rms = 0.0;
 };
-LightAccuracy light_accuracy(const Target& target, const std::vector<float>& density) {
+LightAccuracy light_accuracy(const Target& target, const std::vector<float>& peaks,
+                             const std::vector<float>& density) {
     compress::Sum second, error;
     double peak = 0.0;
     bool violated = false;
     const double flux = compress::integral(target);
     for (std::uint32_t r = 0; r < target.rows; ++r)
         for (std::uint32_t c = 0; c < target.columns; ++c) {
-            const double f = target.row(r)[c], p = density[std::size_t{r} * target.columns + c];
+            const std::size_t i = std::size_t{r} * target.columns + c;
+            const double f = target.values[i], p = density[i];
             const double measure = target.row_measure[r] * target.column_measure[c];
             if (f > 0.0 && !(p > 0.0)) {
                 violated = true;
             } else if (f > 0.0) {
                 second.add(f * f / p * measure);
-                peak = std::max(peak, f / p);
+                peak = std::max(peak, (peaks.empty() ? f : double{peaks[i]}) / p);
             }
             error.add((p - f / flux) * (p - f / flux) * measure);
         }
     LightAccuracy out;
-    out.relative_variance = second.value() / (target.mean_square > 0.0 ? target.mean_square : flux * flux) - 1.0;
+    const double mean_square = target.mean_square > 0.0 ? target.mean_square : flux * flux;
+    out.relative_variance = second.value() / mean_square - 1.0;
     // Densities are floats, and so are CDFs: what they round is no variance worth telling.
     if (out.relative_variance < 1e-9) out.relative_variance = 0.0;
-    out.max_weight = peak / flux;
+    out.max_weight = peak / std::sqrt(mean_square);
     if (violated) out.relative_variance = out.max_weight = HUGE_VAL;
     out.rms = std::sqrt(error.value() / (4.0 * ACDF_PI));
     return out;
@@ -106,7 +109,8 @@ private:
 
 } // namespace
 
-std::vector<Candidate> environment_baselines(const Target& target, const SweepOptions& options) {
+std::vector<Candidate> environment_baselines(const Target& target, const std::vector<float>& peaks,
+                                             const SweepOptions& options) {
     std::vector<Candidate> out;
     out.push_back(baseline_candidate("full_cdf", "full-resolution CDF", measure::full_cdf_sampler(target)));
     out.push_back(baseline_candidate("alias_table", "alias table", measure::alias_sampler(target)));
@@ -123,7 +127,7 @@ std::vector<Candidate> environment_baselines(const Target& target, const SweepOp
             measure::downsampled_cdf_sampler(target, 2 * rows, rows)));
     }
     for (Candidate& candidate : out) {
-        const LightAccuracy accuracy = light_accuracy(target, texel_pdfs(target, *candidate.sampler));
+        const LightAccuracy accuracy = light_accuracy(target, peaks, texel_pdfs(target, *candidate.sampler));
         candidate.row.relative_variance = accuracy.relative_variance;
         candidate.row.max_weight = accuracy.max_weight;
         candidate.row.rms = accuracy.rms;

@@ -1,12 +1,14 @@
 #include "tools/sweep/build.h"
 
 #include "build/accuracy/local.h"
+#include "build/own_terms.h"
 #include "measure/samplers/light_samplers.h"
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
 #include "tools/plot/image.h"
 #include "tools/plot/knots.h"
 #include "tools/plot/local.h"
+#include "tools/sweep/advice.h"
 #include "tools/sweep/recommend.h"
 #include "tools/sweep/timing.h"
 
@@ -87,6 +89,11 @@ void take_options(Sweep& sweep, const SweepOptions& options) {
     sweep.numbers = options.numbers;
 }
 
+measure::MapLight map_light(const compress::Target& target, const SweepOptions& options) {
+    if (options.texels.empty()) return measure::MapLight(target);
+    return {builder::grid_of(options.texels), options.target.filter, options.target.wrap == builder::Wrap::repeat};
+}
+
 void build_all(Sweep& sweep, std::vector<Candidate>& candidates, const std::vector<Step>& steps,
                const std::function<Candidate(const Step&)>& make, const build::Progress& progress) {
     std::string last_failure;
@@ -105,9 +112,10 @@ void build_all(Sweep& sweep, std::vector<Candidate>& candidates, const std::vect
         made.row.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         made.row.system = "acdf";
         made.row.fit = steps[i].fit;
-        made.row.bytes = made.file->bytes.size();
+        made.row.bytes = made.sampler->bytes();
+        made.row.file_bytes = made.file->bytes.size();
         const bool again = !candidates.empty() && candidates.back().row.fit == made.row.fit &&
-                           candidates.back().row.bytes == made.row.bytes;
+                           candidates.back().row.file_bytes == made.row.file_bytes;
         if (!again) candidates.push_back(std::move(made));
     }
     if (candidates.empty()) throw std::invalid_argument("none of the sizes can be made: " + last_failure);
@@ -190,7 +198,7 @@ void add_colour_bar(Sweep& sweep) {
 std::string picture_title(const SweepRow& row) {
     char text[96];
     std::snprintf(text, sizeof text, ", relative variance %.3g", row.relative_variance);
-    return row.label + ", " + to_readable_size(row.bytes) + text;
+    return row.label + ", " + size_text(row) + text;
 }
 
 build::Progress part_of(const build::Progress& progress, double begin, double width) {

@@ -1,11 +1,13 @@
 // What the sweeps of all kinds are put together from.
 #pragma once
 
+#include "measure/map_lookup.h"
 #include "measure/samplers/light_sampler.h"
 #include "tools/plot/colour.h"
 #include "tools/sweep/sweep.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <chrono>
 #include <functional>
@@ -50,6 +52,9 @@ std::vector<Step> steps_of(SweepKind kind, const SweepOptions& options);
 
 /// What the advice goes by.
 void take_options(Sweep& sweep, const SweepOptions& options);
+
+/// What estimates find in a direction; `target` (compress::of_texels) is referred to.
+measure::MapLight map_light(const compress::Target& target, const SweepOptions& options);
 
 /// Fills `candidates` with what `make` builds for each step, timed. Steps whose goal is out of reach
 /// (std::runtime_error) become notes, files that equal the one before them in fit and size are left out. Throws

@@ -86,8 +86,6 @@ void check_options(SweepArguments& options, SweepKind kind) {
                                    "is latlong with --kind visibility: points of a mesh see lat-long texels");
     options.scene.check(*options.command);
     const builder::TargetOptions& target = options.sweep.target;
-    if (kind != SweepKind::brdf && target.filter != ACDF_FILTER_NEAREST)
-        throw CLI::ValidationError("--filter", "is nearest in a sweep: that is what the baselines are defined for");
     if (kind != SweepKind::brdf && target.channels.mode == ACDF_CHANNELS_SEPARATE)
         throw CLI::ValidationError("--channel",
                                    "is one channel in a sweep of probes: the baselines are defined for one");
@@ -129,6 +127,14 @@ std::string output_of(const std::string& source, SweepKind kind) {
                                                    : ".acdf");
 }
 
+/// The map's own texels, where a lookup blends them: what estimates find.
+builder::Target own_texels(const SweepArguments& options, const ProbeTarget& swept) {
+    builder::TargetOptions target = options.sweep.target;
+    if (target.filter == ACDF_FILTER_NEAREST || swept.resampled) return {};
+    target.filter = ACDF_FILTER_NEAREST;
+    return load_target(options.source, options.input, target, notes_of(options.source, true)).target;
+}
+
 /// What files are made of, as the subcommand does that makes one; points of meshes see lat-long texels.
 ProbeTarget sweep_target(const SweepArguments& options, SweepKind kind) {
     input::ProbeOptions input = options.input;
@@ -158,6 +164,7 @@ Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress
     const input::Probe& probe = swept.probe;
     const builder::Target& target = swept.target;
     const builder::Source source = source_of(probe, options.input);
+    if (kind != SweepKind::visibility) options.sweep.texels = own_texels(options, swept);
     const bool square = builder::grid_of(target).parameterization == ACDF_PARAM_OCTAHEDRAL;
     Sweep sweep = kind == SweepKind::visibility
                       ? sweep_visibility(target, source, swept_mesh(options), options.sweep, progress)
@@ -316,9 +323,6 @@ void add_sweep(CLI::App& program, int& exit_code) {
     add_repairs(command, options->input);
     add_sweep_options(command, *options);
     add_target_options(command, options->sweep.target);
-    command.get_option("--filter")
-        ->description("How your renderer looks the map up: nearest, which baselines are defined "
-                      "for; a file for bilinear is measured by acdf env and acdf local");
     CLI::Option& channel = *command.get_option("--channel");
     channel.description(channel.get_description() + ". Baselines of probes are defined for one channel: not rgb");
     command.add_option("-o,--output", options->folder, "The folder to write to; made where it does not exist")

@@ -77,10 +77,11 @@ void add_pictures(Sweep& sweep, const compress::Target& target, const std::vecto
 void add_situations(const compress::Target& target, const measure::LightSampler& sampler,
                     const std::vector<float>& density, const std::vector<SurfacePoint>& points, Scale scale,
                     const SweepOptions& options, Lit* out) {
+    const measure::MapLight light = map_light(target, options);
     const std::vector<PointVariance> exact = point_variances(target, density, points);
     const SurfaceVariances variances = summary(exact, scale);
     const SampledVariances sampled =
-        sobol_variances(target, sampler, points, exact, scale, options.visible.spp, options.seeds);
+        sobol_variances(target, light, sampler, points, exact, scale, options.visible.spp, options.seeds);
     out[0] = variances.alone;
     out[1] = variances.partner;
     out[0].sobol = std::isinf(out[0].mean) ? HUGE_VAL : sampled.alone;
@@ -92,7 +93,7 @@ void add_situations(const compress::Target& target, const measure::LightSampler&
 Sweep sweep_environment(const builder::Target& fitted, const builder::Source& source, const SweepOptions& options,
                         const build::Progress& progress) {
     compress::Target map;
-    const compress::Target& target = compress::looked_up(builder::grid_of(fitted), map);
+    const compress::Target& target = compress::of_texels(builder::grid_of(fitted), map);
     Sweep sweep;
     sweep.kind = SweepKind::environment;
     take_options(sweep, options);
@@ -103,7 +104,8 @@ Sweep sweep_environment(const builder::Target& fitted, const builder::Source& so
         [&](const Step& step) { return make_file(fitted, source, step); }, part(0.0, 0.7));
 
     sweep.reference = candidates.size();
-    for (Candidate& baseline : environment_baselines(target, options)) candidates.push_back(std::move(baseline));
+    for (Candidate& baseline : environment_baselines(target, builder::grid_of(fitted).peaks, options))
+        candidates.push_back(std::move(baseline));
     const std::vector<SurfacePoint> open = in_the_open(build::random_normals(options.normals)),
                                     hidden = behind_occluders(target, options.points);
     sweep.conditions = static_cast<std::uint32_t>(open.size());

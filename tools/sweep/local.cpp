@@ -109,14 +109,15 @@ void add_local_pictures(Sweep& sweep, const compress::Target& target, const std:
 void add_sobol(const compress::Target& target, const std::vector<build::Normal>& normals,
                const SweepOptions& options, std::vector<Candidate>& candidates) {
     const std::vector<SurfacePoint> points = in_the_open(normals);
+    const measure::MapLight light = map_light(target, options);
     const std::vector<float> anything(target.values.size(), 1.0f);
     std::vector<double> irradiances;
     for (const PointVariance& point : point_variances(target, anything, points))
         irradiances.push_back(point.irradiance);
     for (Candidate& each : candidates)
         if (each.has_pdf && std::isfinite(each.row.relative_variance))
-            each.row.sobol =
-                sobol_variance(target, *each.sampler, points, irradiances, options.visible.spp, options.seeds);
+            each.row.sobol = sobol_variance(target, light, *each.sampler, points, irradiances, options.visible.spp,
+                                            options.seeds);
 }
 
 } // namespace
@@ -124,7 +125,7 @@ void add_sobol(const compress::Target& target, const std::vector<build::Normal>&
 Sweep sweep_local(const builder::Target& fitted, const builder::Source& source, const SweepOptions& options,
                   const build::Progress& progress) {
     compress::Target map;
-    const compress::Target& target = compress::looked_up(builder::grid_of(fitted), map);
+    const compress::Target& target = compress::of_texels(builder::grid_of(fitted), map);
     Sweep sweep;
     sweep.kind = SweepKind::local;
     take_options(sweep, options);

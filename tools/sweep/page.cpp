@@ -53,9 +53,12 @@ std::string fact(const std::string& name, const std::string& value, const std::s
 std::string facts_html(const Sweep& sweep, const Advice& advice) {
     const SweepRow &best = sweep.rows[advice.recommended.row], &base = sweep.rows[sweep.reference];
     std::string out = "<dl class=\"facts\">\n";
-    out += fact("Size", to_readable_size(best.bytes),
-                short_number(double(base.bytes) / double(best.bytes)) + " times smaller than the " + base.label +
-                    ", which takes " + to_readable_size(base.bytes));
+    const std::string file = best.file_bytes > 0 ? "the file's " + to_readable_size(best.file_bytes) +
+                                                       " and the tables that are made when it is opened; "
+                                                 : "";
+    out += fact("Memory", to_readable_size(best.bytes),
+                file + short_number(double(base.bytes) / double(best.bytes)) + " times smaller than the " +
+                    base.label + ", which takes " + to_readable_size(base.bytes));
     const bool pictures = sweep.kind == SweepKind::environment;
     const std::string where = pictures ? " on a diffuse surface, nothing hidden" : "";
     out += fact("Noise at " + std::to_string(sweep.visible.spp) + " samples per pixel",
@@ -213,7 +216,8 @@ std::string cell_html(const SweepColumn& column, const Sweep& sweep, const Sweep
     const std::string name = column.name;
     if (name == "label") return "<td class=\"left\"" + exact + ">" + escaped(row.label) + "</td>";
     if (name == "options") return "<td class=\"text\"" + exact + "><code>" + escaped(row.options) + "</code></td>";
-    if (name == "bytes") return "<td" + exact + ">" + escaped(to_readable_size(row.bytes)) + "</td>";
+    if (name == "bytes" || (name == "file_bytes" && row.ours()))
+        return "<td" + exact + ">" + escaped(to_readable_size(std::get<std::uint64_t>(value))) + "</td>";
     if (name == "noise")
         return "<td" + exact + ">" + (std::isfinite(row.shaded()) ? noise_texts(row.shaded()) : "") + "</td>";
     if (const auto* count = std::get_if<std::uint64_t>(&value))

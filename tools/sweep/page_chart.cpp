@@ -148,7 +148,7 @@ std::string axes_svg(const Chart& chart, const Layout& at) {
         out += text_at(at.x.at(0.0), bottom + 22.0, "middle", "none");
     }
     out += line("axis", left, bottom, right, bottom) + line("axis", left, kTop, left, bottom);
-    out += text_at(0.5 * (left + right), kHeight - 12.0, "middle", "size", "label");
+    out += text_at(0.5 * (left + right), kHeight - 12.0, "middle", "memory", "label");
     out += text_at(4.0, 16.0, "start", chart.y_label, "label");
     if (chart.limit == chart.limit && chart.limit >= at.y.low && chart.limit <= at.y.high) {
         out += line("limit", left, at.y.at(chart.limit), right, at.y.at(chart.limit));

@@ -73,17 +73,19 @@ PointVariance variance_at(const compress::Target& target, const build::TexelCosi
     for (std::uint32_t r = 0; r < target.rows; ++r) {
         const std::size_t first = std::size_t{r} * target.columns;
         const float* light = target.row(r);
+        const float* mean = target.means.size() == 1 ? target.means[0].data() + first : light;
         const float* p = density.data() + first;
         double row[5] = {};
         cosines.for_each_above(point.n.data(), r, [&](std::uint32_t c, double cosine) {
             if (light[c] == 0.0f || (!point.hidden.empty() && point.hidden[first + c])) return;
-            const double f = double{light[c]} * cosine, own = p[c], b = cosine / ACDF_PI;
-            const double lit = f * target.column_measure[c], both = lit / (own + b);
+            const double g = double{light[c]} * cosine, own = p[c], b = cosine / ACDF_PI;
+            const double lit = double{mean[c]} * cosine * target.column_measure[c], part = lit / (own + b);
+            const double square = g * g * target.column_measure[c];
             row[0] += lit;
-            row[2] += f * both;
-            row[3] += own * both;
-            row[4] += b * both;
-            if (own > 0.0) row[1] += f * lit / own;
+            row[2] += square / (own + b);
+            row[3] += own * part;
+            row[4] += b * part;
+            if (own > 0.0) row[1] += square / own;
             else sums.violated = true;
         });
         sums.add_row(row, target.row_measure[r]);

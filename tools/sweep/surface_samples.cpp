@@ -13,15 +13,15 @@ namespace {
 
 using measure::CosineHemisphere;
 
-/// Light times cosine in the texel of wi, 0 where that is hidden.
-double lit_texel(const compress::Target& target, const measure::ProbeGrid& grid, const SurfacePoint& point,
-                 const float wi[3]) {
+/// Light times cosine, 0 where the texel of wi is hidden.
+double lit_texel(const compress::Target& target, const measure::MapLight& light, const measure::ProbeGrid& grid,
+                 const SurfacePoint& point, const float wi[3]) {
     const build::Normal& n = point.n;
     const double cosine = double{n[0]} * wi[0] + double{n[1]} * wi[1] + double{n[2]} * wi[2];
     std::uint32_t texel[2];
     if (!(cosine > 0.0) || !grid.find(wi, texel)) return 0.0;
     const std::size_t at = std::size_t{texel[1]} * target.columns + texel[0];
-    return point.hidden.empty() || !point.hidden[at] ? target.values[at] * cosine : 0.0;
+    return point.hidden.empty() || !point.hidden[at] ? light.radiance(wi) * cosine : 0.0;
 }
 
 measure::ShadingPoint shading_of(const SurfacePoint& point) {
@@ -33,9 +33,9 @@ measure::ShadingPoint shading_of(const SurfacePoint& point) {
 /// Estimates of the irradiance of one point.
 class Draws {
 public:
-    Draws(const compress::Target& target, const measure::ProbeGrid& grid, measure::PointSampler& sampler,
-          const SurfacePoint& point)
-        : target_(target), grid_(grid), sampler_(sampler), point_(point) {
+    Draws(const compress::Target& target, const measure::MapLight& light, const measure::ProbeGrid& grid,
+          measure::PointSampler& sampler, const SurfacePoint& point)
+        : target_(target), light_(light), grid_(grid), sampler_(sampler), point_(point) {
         sampler_.move_to(shading_of(point));
     }
 
@@ -65,9 +65,10 @@ private:
         const std::array<double, 2> u = random.pair();
         return sampler_.sample(u[0], u[1]);
     }
-    double integrand(const float wi[3]) const { return lit_texel(target_, grid_, point_, wi); }
+    double integrand(const float wi[3]) const { return lit_texel(target_, light_, grid_, point_, wi); }
 
     const compress::Target& target_;
+    const measure::MapLight& light_;
     const measure::ProbeGrid& grid_;
     measure::PointSampler& sampler_;
     const SurfacePoint& point_;
@@ -75,15 +76,16 @@ private:
 
 } // namespace
 
-SampledVariances sobol_variances(const compress::Target& target, const measure::LightSampler& sampler,
-                                 const std::vector<SurfacePoint>& points, const std::vector<PointVariance>& exact,
-                                 Scale scale, std::uint32_t samples, std::uint32_t seeds) {
+SampledVariances sobol_variances(const compress::Target& target, const measure::MapLight& light,
+                                 const measure::LightSampler& sampler, const std::vector<SurfacePoint>& points,
+                                 const std::vector<PointVariance>& exact, Scale scale, std::uint32_t samples,
+                                 std::uint32_t seeds) {
     samples += samples % 2;
     const measure::ProbeGrid grid(target);
     std::vector<PointVariance> sampled(points.size());
     compress::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         const std::unique_ptr<measure::PointSampler> own = sampler.point_sampler();
-        Draws draws(target, grid, *own, points[i]);
+        Draws draws(target, light, grid, *own, points[i]);
         measure::Random random(i, measure::Numbers::sobol);
         std::vector<double> alone, partner;
         for (std::uint32_t seed = 0; seed < seeds; ++seed) {
@@ -97,15 +99,16 @@ SampledVariances sobol_variances(const compress::Target& target, const measure::
     return {out.alone.mean, out.partner.mean};
 }
 
-double sobol_variance(const compress::Target& target, const measure::LightSampler& sampler,
-                      const std::vector<SurfacePoint>& points, const std::vector<double>& irradiances,
-                      std::uint32_t samples, std::uint32_t seeds) {
+double sobol_variance(const compress::Target& target, const measure::MapLight& light,
+                      const measure::LightSampler& sampler, const std::vector<SurfacePoint>& points,
+                      const std::vector<double>& irradiances, std::uint32_t samples, std::uint32_t seeds) {
     const measure::ProbeGrid grid(target);
     std::vector<SampledPoint> sampled;
     for (std::size_t i = 0; i < points.size(); ++i) sampled.push_back({shading_of(points[i]), irradiances[i]});
     return sobol_variance(
-        sampler, sampled, [&](std::size_t i, const float wi[3]) { return lit_texel(target, grid, points[i], wi); },
-        samples, seeds);
+        sampler, sampled,
+        [&](std::size_t i, const float wi[3]) { return lit_texel(target, light, grid, points[i], wi); }, samples,
+        seeds);
 }
 
 } // namespace acdf::tools

@@ -1,6 +1,7 @@
 // Variances of what a diffuse surface reflects where a renderer's numbers are not independent: by sampling samples.
 #pragma once
 
+#include "measure/map_lookup.h"
 #include "tools/sweep/surface.h"
 
 #include <cstdint>
@@ -15,15 +16,16 @@ struct SampledVariances {
 /// The variance of an estimate of `samples` (rounded up to an even number) times their number, over E^2 as
 /// `summary` scales it, mean over points: with independent numbers those of `exact`, which is of the same points;
 /// here of scrambled Sobol' points. Over `seeds` (at least 2) estimates. With an MIS partner half of the samples
-/// are the cosine's. The same for any number of threads.
-SampledVariances sobol_variances(const compress::Target& target, const measure::LightSampler& sampler,
-                                 const std::vector<SurfacePoint>& points, const std::vector<PointVariance>& exact,
-                                 Scale scale, std::uint32_t samples, std::uint32_t seeds);
+/// are the cosine's. `light` is what they find. The same for any number of threads.
+SampledVariances sobol_variances(const compress::Target& target, const measure::MapLight& light,
+                                 const measure::LightSampler& sampler, const std::vector<SurfacePoint>& points,
+                                 const std::vector<PointVariance>& exact, Scale scale, std::uint32_t samples,
+                                 std::uint32_t seeds);
 
 /// Of the samples alone: variance times samples over each point's own E^2, mean over points. `irradiances` are
 /// those of the points, by summation.
-double sobol_variance(const compress::Target& target, const measure::LightSampler& sampler,
-                      const std::vector<SurfacePoint>& points, const std::vector<double>& irradiances,
-                      std::uint32_t samples, std::uint32_t seeds);
+double sobol_variance(const compress::Target& target, const measure::MapLight& light,
+                      const measure::LightSampler& sampler, const std::vector<SurfacePoint>& points,
+                      const std::vector<double>& irradiances, std::uint32_t samples, std::uint32_t seeds);
 
 } // namespace acdf::tools

@@ -52,12 +52,14 @@ struct Lit {
 
 /// One file, or one baseline. kUnknown where something does not apply.
 struct SweepRow {
-    std::string system;      ///< "acdf", or a baseline's name for programs: "full_cdf"
-    std::string fit;         ///< of acdf
-    std::string label;       ///< for people
-    std::string options;     ///< of acdf: what makes the file, in the words of the command line
-    std::uint64_t bytes = 0; ///< of the file; of a baseline what sampling reads
-    std::uint64_t cells = 0; ///< of acdf
+    std::string system;  ///< "acdf", or a baseline's name for programs: "full_cdf"
+    std::string fit;     ///< of acdf
+    std::string label;   ///< for people
+    std::string options; ///< of acdf: what makes the file, in the words of the command line
+    std::uint64_t bytes =
+        0; ///< in memory: of a file with the tables made at load, of a baseline what sampling reads
+    std::uint64_t file_bytes = 0; ///< of acdf: of the file alone
+    std::uint64_t cells = 0;      ///< of acdf
     /// Of one sample over the squared mean, exact. Infinite: biased, light without density. Environment: of the
     /// light itself; local and BRDF: of what a surface reflects, mean over normals or views.
     double relative_variance = kUnknown;
@@ -123,6 +125,9 @@ struct SweepOptions {
     std::vector<std::string> fits;      ///< empty: default_fits
     VisibleNoise visible;
     builder::TargetOptions target;
+    /// The map's own texels (of nearest lookup), where the filter blends them: what estimates find. Empty: they
+    /// find what is fitted, texel by texel.
+    builder::Target texels;
     bool timing = true;
     bool pictures = true;
     std::uint32_t normals = 64; ///< environment and local; visibility: points

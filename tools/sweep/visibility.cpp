@@ -54,7 +54,7 @@ void measure_on(const measure::MeshStage& stage, std::vector<Candidate>& candida
 Sweep sweep_visibility(const builder::Target& fitted, const builder::Source& source, const SweptMesh& mesh,
                        const SweepOptions& options, const build::Progress& progress) {
     compress::Target map;
-    const compress::Target& target = compress::looked_up(builder::grid_of(fitted), map);
+    const compress::Target& target = compress::of_texels(builder::grid_of(fitted), map);
     Sweep sweep;
     sweep.kind = SweepKind::visibility;
     take_options(sweep, options);

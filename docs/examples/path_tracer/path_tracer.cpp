@@ -6,8 +6,9 @@
 #include "picture.h"
 #include "scene.h"
 
-#include <acdf/product.h>
+#include <acdf/product/product.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -111,7 +112,7 @@ struct LocalLight {
     }
 };
 
-/// A surface's lobe as acdf/product.h asks for one, with light that follows it.
+/// A surface's lobe as acdf/product/product.h asks for one, with light that follows it.
 auto product_of(const AcdfLocal& light, const Material* m) {
     return acdf::ProductSampler(
         light, acdf::Lobe([m](const float wo[3], const float wi[3]) { return luminance(brdf(*m, wo, wi)); },

@@ -5,8 +5,8 @@
 #include "compress/parallel.h"
 #include "compress/sum.h"
 
+#include <acdf/batch/batch.h>
 #include <acdf/sample.h>
-#include <acdf/wavefront.h>
 
 #include <algorithm>
 #include <array>
@@ -134,14 +134,14 @@ void for_each_half_vector(const compress::View& view, const double wo[3], std::u
 class StoredPdfs {
 public:
     explicit StoredPdfs(const File& file) : brdf_(file.brdf().data()) {
-        if (!brdf_.tables || !brdf_.tables->grid) return; // a wave would look up the view for each direction
-        if (!BrdfWavefront::prepare(file.brdf(), waves_).ok()) throw std::bad_alloc();
+        if (!brdf_.tables || !brdf_.tables->grid) return; // a batch would look up the view for each direction
+        if (!BrdfBatch::prepare(file.brdf(), batch_).ok()) throw std::bad_alloc();
     }
     /// Of wi[i] into out[i], i < count; all of wo[i] are the one of `view`.
     void of(const AcdfBrdfView& view, const float (*wo)[3], const float (*wi)[3], std::size_t count,
             float* out) const {
-        if (waves_.instructions() != Instructions::none) waves_.pdf(wo, wi, count, out);
-        else acdf_brdf_view_pdfs(&brdf_, &view, wi, count, out);
+        if (batch_.instructions() != Instructions::none) batch_.pdf(wo, wi, count, out);
+        else brdf_pdf_batch(brdf_, view, wi, count, out);
     }
     const AcdfBrdf& brdf() const { return brdf_; }
     /// Whether both sides of all views have the same densities.
@@ -149,7 +149,7 @@ public:
 
 private:
     AcdfBrdf brdf_;
-    BrdfWavefront waves_;
+    BrdfBatch batch_;
 };
 
 double light_above(const compress::Reflected& reflected, const double wo[3], const double wi[3]) {

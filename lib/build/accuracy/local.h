@@ -6,6 +6,7 @@
 
 #include <acdf/accuracy.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <array>
 #include <cstdint>

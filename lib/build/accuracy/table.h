@@ -5,6 +5,7 @@
 
 #include <acdf/accuracy.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cstdint>
 #include <vector>

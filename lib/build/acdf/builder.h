@@ -39,6 +39,7 @@
 #include <acdf/outcome.h>
 #include <acdf/pixels.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -52,19 +53,27 @@ namespace acdf::builder {
 
 // ---- options ----
 
-/// How large a file is to be, or how accurate; only what `kind` names counts.
+/// How large a file is to be, or how accurate; only what `kind` names counts. `automatic`, the default, is the
+/// budget of DefaultBudget.
 struct Goal {
-    enum class Kind { cells, budget, variance };
+    enum class Kind { automatic, cells, budget, variance };
 
-    Kind kind = Kind::cells;
-    std::uint32_t cells = 4096; ///< cells: about so many, up to 2^28; of what, each kind of file says
-    std::uint64_t budget = 0;   ///< budget: the most accurate file of at most so many bytes
-    double variance = 0.0;      ///< variance: the smallest file of at most this relative variance, > 0
+    Kind kind = Kind::automatic;
+    std::uint32_t cells = 0;  ///< cells: about so many, up to 2^28; of what, each kind of file says
+    std::uint64_t budget = 0; ///< budget: the most accurate file of at most so many bytes
+    double variance = 0.0;    ///< variance: the smallest file of at most this relative variance, > 0
 
     /// Goals of each kind.
     static Goal of_cells(std::uint32_t n) { return {Kind::cells, n, 0, 0.0}; }
-    static Goal of_budget(std::uint64_t bytes) { return {Kind::budget, 4096, bytes, 0.0}; }
-    static Goal of_variance(double v) { return {Kind::variance, 4096, 0, v}; }
+    static Goal of_budget(std::uint64_t bytes) { return {Kind::budget, 0, bytes, 0.0}; }
+    static Goal of_variance(double v) { return {Kind::variance, 0, 0, v}; }
+};
+
+/// Bytes of a file for which no goal is given.
+struct DefaultBudget {
+    static constexpr std::uint64_t environment = 64 << 10, local = 1 << 20, visibility = 4 << 20, brdf = 128 << 10;
+    /// Of a table: 64 KiB, and 256 bytes a bin where it has more than 256 of them.
+    static constexpr std::uint64_t table(std::uint64_t bins) { return bins > 256 ? 256 * bins : 64 << 10; }
 };
 
 /// Weights of red, green and blue, >= 0 and not all 0; Rec. 709 luminance.
@@ -123,9 +132,10 @@ enum class Wrap { clamp, repeat };
 struct TargetOptions {
     Channels channels;
     Domain domain = Domain::source;
-    /// How the renderer looks the map up. Set it right: a lookup that blends light into dark texels finds light
-    /// where a nearest fit has none, which is bias.
-    AcdfFilter filter = ACDF_FILTER_NEAREST;
+    /// How the renderer looks the map up. A bilinear fit serves nearest lookups, too, with a little more noise: its
+    /// pdf is positive wherever a texel or its neighbour has light. A nearest fit is biased under bilinear lookups,
+    /// which blend light into dark texels.
+    AcdfFilter filter = ACDF_FILTER_BILINEAR;
     Wrap wrap = Wrap::clamp; ///< of a bilinear lookup
     BadTexelPolicy bad_texels = BadTexelPolicy::zero;
     bool uniform_if_black = false; ///< black becomes the faintest even light, else ErrorCode::no_energy
@@ -252,15 +262,15 @@ struct Visibility {
 
 /// How a local environment is fitted and stored.
 struct LocalOptions {
-    TargetOptions target;                 ///< of pixels and rows; a Target has its own
-    Goal goal = Goal::of_budget(1 << 20); ///< cells: of what bins share, or without sharing of a bin
-    std::uint32_t subdivisions = 0;       ///< octahedral bins, 4 n^2 + 2 of them, n up to 256; 0: as suits the size
-    std::uint32_t columns = 0, rows = 0;  ///< instead lat-long bins, up to 1024 each, without sharing
-    std::uint32_t tiles = 0;              ///< up to ACDF_MAX_TILES; 0: as suits the size
-    double max_weight = 0.0;              ///< with sharing: the largest measured weight, as FitOptions; 0: no bound
-    std::vector<SceneNormal> normals;     ///< only what a scene has; empty: all normals
-    double cosine_share = 0.0;            ///< of samples that are taken around the normal instead, in [0, 0.99]
-    bool sharing = true;                  ///< bins share tiles; else each has a tree of its own, larger and noisier
+    TargetOptions target;                ///< of pixels and rows; a Target has its own
+    Goal goal;                           ///< cells: of what bins share, or without sharing of a bin
+    std::uint32_t subdivisions = 0;      ///< octahedral bins, 4 n^2 + 2 of them, n up to 256; 0: as suits the size
+    std::uint32_t columns = 0, rows = 0; ///< instead lat-long bins, up to 1024 each, without sharing
+    std::uint32_t tiles = 0;             ///< up to ACDF_MAX_TILES; 0: as suits the size
+    double max_weight = 0.0;             ///< with sharing: the largest measured weight, as FitOptions; 0: no bound
+    std::vector<SceneNormal> normals;    ///< only what a scene has; empty: all normals
+    double cosine_share = 0.0;           ///< of samples that are taken around the normal instead, in [0, 0.99]
+    bool sharing = true;                 ///< bins share tiles; else each has a tree of its own, larger and noisier
     LocalShape shape =
         LocalShape::automatic; ///< fast: with sharing, without max_weight, an MIS partner and visibility
     BinTarget bin_target = BinTarget::mean; ///< without sharing
@@ -323,7 +333,7 @@ Status tabulated(const Array& table, Brdf& brdf) noexcept;
 /// How a BRDF is fitted and stored.
 struct BrdfOptions {
     Channels channels;
-    Goal goal = Goal::of_budget(64 << 10); ///< variance; cells: that views share, or of each, up to ACDF_MAX_TILES
+    Goal goal; ///< of the variance fit; cells: that views share, or of each, up to ACDF_MAX_TILES
     AcdfFit fit = ACDF_FIT_VARIANCE;
     bool sharing = true; ///< variance: views share cells and are interpolated; else each has a tree, nearest serves
     /// Stored views, 2 to 1024 in theta_o, and 1 or 4 to 1024 in phi_o; 0: as suits the size.
@@ -363,7 +373,7 @@ struct TableOptions {
     std::uint32_t indexed = 0;      ///< leading axes that the caller of a sample chooses: each index is a bin
     std::vector<std::string> names; ///< one an axis, 1 to 15 bytes, all different; empty: x0, x1, ...
     std::vector<std::pair<double, double>> ranges; ///< one an axis: coordinates of its ends; empty: 0 to its length
-    Goal goal = Goal::of_cells(0);                 ///< cells: a bin, on average; 0: 4096 in all, at least 64 a bin
+    Goal goal;                                     ///< cells: a bin, on average
     double max_weight = 0.0;                       ///< the largest f/p over its mean, at least 1; 0: no bound
     bool bad_as_zero = false;                      ///< bad numbers count as 0, else ErrorCode::bad_source
     Partner mis;                                   ///< ACDF_PARTNER_TABLE, without max_weight or a goal of variance

@@ -32,8 +32,7 @@ void check(AcdfCodec codec) {
 
 void check(const Goal& goal, std::uint32_t least_cells) {
     using Kind = Goal::Kind;
-    require(goal.kind == Kind::cells || goal.kind == Kind::budget || goal.kind == Kind::variance,
-            "goal.kind is no Goal::Kind");
+    require(goal.kind >= Kind::automatic && goal.kind <= Kind::variance, "goal.kind is no Goal::Kind");
     require(goal.kind != Kind::cells || (goal.cells >= least_cells && goal.cells <= 1u << 28),
             "goal.cells is too small, or above 2^28");
     require(goal.kind != Kind::budget || (goal.budget > 0 && goal.budget <= std::uint64_t{1} << 40),
@@ -167,7 +166,8 @@ static void check_visibility(const LocalOptions& options) {
             "portals are for files with visibility cells");
     if (!options.visibility.point) return;
     require(options.sharing, "visibility cells are for bins that share tiles");
-    require(options.goal.kind == Goal::Kind::budget, "the goal of visibility cells is a budget");
+    require(options.goal.kind == Goal::Kind::budget || options.goal.kind == Goal::Kind::automatic,
+            "the goal of visibility cells is a budget");
     for (const auto& row : options.visibility.transform)
         for (const float t : row) require(std::isfinite(t), "the transform of visibility cells is not finite");
     require(options.visibility.portals.empty() || keeps_angles(options.visibility.transform),
@@ -216,7 +216,7 @@ void check(const BrdfOptions& options) {
 }
 
 void check(const TableOptions& options) {
-    check(options.goal, 0);
+    check(options.goal, 1);
     check_max_weight(options.max_weight);
     check(options.codec);
     check(options.source);

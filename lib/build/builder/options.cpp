@@ -11,11 +11,16 @@
 namespace acdf::builder {
 namespace {
 
-compress::Goal internal(const Goal& goal) {
-    const auto kind = goal.kind == Goal::Kind::budget     ? compress::Goal::Kind::budget
-                      : goal.kind == Goal::Kind::variance ? compress::Goal::Kind::variance
-                                                          : compress::Goal::Kind::cells;
-    return {kind, goal.cells, goal.budget, goal.variance};
+/// `automatic`: the budget where no goal is given.
+compress::Goal internal(const Goal& goal, std::uint64_t automatic) {
+    switch (goal.kind) {
+    case Goal::Kind::cells:
+        return {compress::Goal::Kind::cells, goal.cells, 0, 0.0};
+    case Goal::Kind::variance:
+        return {compress::Goal::Kind::variance, 0, 0, goal.variance};
+    default:
+        return {compress::Goal::Kind::budget, 0, goal.kind == Goal::Kind::budget ? goal.budget : automatic, 0.0};
+    }
 }
 
 compress::ChannelWeights internal(const ChannelWeights& weights) { return {weights.r, weights.g, weights.b}; }
@@ -74,7 +79,7 @@ build::EnvironmentOptions internal(const EnvironmentOptions& options) {
     build::EnvironmentOptions out;
     out.target = internal(options.target);
     out.fit = internal(options.fit);
-    out.fit.goal = internal(options.goal);
+    out.fit.goal = internal(options.goal, DefaultBudget::environment);
     out.codec = options.codec;
     out.mis = internal(options.mis);
     out.scene = internal(options.normals);
@@ -152,7 +157,7 @@ build::SceneVisibility internal(const Visibility& visibility) {
 build::LocalOptions internal(const LocalOptions& options) {
     build::LocalOptions out;
     out.target = internal(options.target);
-    out.goal = internal(options.goal);
+    out.goal = internal(options.goal, options.visibility.point ? DefaultBudget::visibility : DefaultBudget::local);
     out.subdivisions = options.subdivisions;
     out.columns = options.columns;
     out.rows = options.rows;
@@ -181,7 +186,7 @@ build::BrdfFileOptions internal(const BrdfOptions& options) {
     build::BrdfFileOptions out;
     out.fit.fit = options.fit;
     out.fit.sharing = options.sharing;
-    out.fit.goal = internal(options.goal);
+    out.fit.goal = internal(options.goal, DefaultBudget::brdf);
     out.fit.theta_views = options.theta_views;
     out.fit.phi_views = options.phi_views;
     out.fit.theta_segments = options.theta_segments;
@@ -195,13 +200,13 @@ build::BrdfFileOptions internal(const BrdfOptions& options) {
     return out;
 }
 
-build::TableOptions internal(const TableOptions& options) {
+build::TableOptions internal(const TableOptions& options, std::uint64_t bins) {
     build::TableOptions out;
     out.indexed = options.indexed;
     out.names = options.names;
     out.ranges = options.ranges;
-    out.cells = options.goal.cells;
-    out.fit.goal = internal(options.goal);
+    if (options.goal.kind == Goal::Kind::cells) out.cells = options.goal.cells;
+    out.fit.goal = internal(options.goal, DefaultBudget::table(bins));
     out.fit.max_weight = options.max_weight;
     out.mis = internal(options.mis);
     out.other_name = options.other_source.name;

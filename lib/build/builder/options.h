@@ -14,7 +14,7 @@ compress::TargetOptions internal(const TargetOptions& options);
 build::EnvironmentOptions internal(const EnvironmentOptions& options);
 build::LocalOptions internal(const LocalOptions& options);
 build::BrdfFileOptions internal(const BrdfOptions& options);
-build::TableOptions internal(const TableOptions& options);
+build::TableOptions internal(const TableOptions& options, std::uint64_t bins);
 
 // Whether no option asks for what the fast shape has not.
 bool may_be_fast(const LocalOptions& options);

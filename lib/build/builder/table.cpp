@@ -6,14 +6,24 @@
 #include "build/builder/options.h"
 #include "build/builder/sources.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace acdf::builder {
 namespace {
 
+/// Those that the first axes make; what is beyond the most that there may be is refused later.
+std::uint64_t bin_count(const build::Array& array, std::uint32_t indexed) {
+    constexpr std::uint64_t kMost = 1u << 28;
+    std::uint64_t bins = 1;
+    for (std::size_t axis = 0; axis < indexed && axis < array.shape.size(); ++axis)
+        bins = std::min(kMost, bins * array.shape[axis]);
+    return bins;
+}
+
 Table make(const build::Array& array, const BadNumbers& bad, const TableOptions& options,
            const build::Progress& progress) {
-    build::TableOptions asked = internal(options);
+    build::TableOptions asked = internal(options, bin_count(array, options.indexed));
     build::Array other;
     if (options.mis.kind != ACDF_PARTNER_NONE) {
         check(options.other);

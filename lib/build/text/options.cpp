@@ -43,7 +43,7 @@ std::string target_text(const compress::TargetOptions& target) {
                               : option_number(w.r) + "," + option_number(w.g) + "," + option_number(w.b)) +
                 " ";
     }
-    return target.filter == ACDF_FILTER_NEAREST ? text : text + "--filter " + filter_name(target.filter) + " ";
+    return target.filter == ACDF_FILTER_BILINEAR ? text : text + "--filter " + filter_name(target.filter) + " ";
 }
 
 std::string fit_text(AcdfFit fit) { return fit == ACDF_FIT_VARIANCE ? "" : "--fit " + fit_name(fit) + " "; }

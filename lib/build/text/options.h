@@ -30,7 +30,7 @@ std::string option_number(double value);
 std::string option_number(float value);
 
 // Each ends in a space, or is empty where all is as by default.
-std::string target_text(const compress::TargetOptions& target); ///< "--channel rgb --filter bilinear "
+std::string target_text(const compress::TargetOptions& target); ///< "--channel rgb --filter nearest "
 std::string fit_text(AcdfFit fit);                              ///< "--fit cdf "
 std::string codec_text(AcdfCodec codec);                        ///< "--compress zlib "
 

@@ -1,11 +1,12 @@
-// GgxSampler as product sampling asks for a lobe (acdf/lobe.h). Its density over the cosine stands for the BRDF.
+// GgxSampler as product sampling asks for a lobe (acdf/product/lobe.h). Its density over the cosine stands for the
+// BRDF.
 #pragma once
 
 #include "measure/samplers/brdf_samplers.h"
 #include "measure/samplers/point_samplers.h"
 #include "measure/surface_frame.h"
 
-#include <acdf/lobe.h>
+#include <acdf/product/lobe.h>
 
 #include <algorithm>
 

@@ -51,7 +51,7 @@ struct EnvironmentFile {
     const File& file;
     EnvironmentView view{file.environment()};
     explicit EnvironmentFile(const File& f) : file(f) {}
-    std::uint64_t bytes() const { return file.size(); }
+    std::uint64_t bytes() const { return memory_of(file); }
 };
 
 class EnvironmentPoint final : public PointSampler {
@@ -74,7 +74,7 @@ struct LocalFile {
     bool visibility;
     LocalFile(const File& f, bool with_visibility)
         : file(f), visibility(with_visibility && view.has_visibility()) {}
-    std::uint64_t bytes() const { return file.size(); }
+    std::uint64_t bytes() const { return memory_of(file); }
 };
 
 class LocalPoint final : public PointSampler {
@@ -161,7 +161,7 @@ struct BrdfFile {
     const File& file;
     AcdfBrdf data{file.brdf().data()};
     explicit BrdfFile(const File& f) : file(f) {}
-    std::uint64_t bytes() const { return file.size(); }
+    std::uint64_t bytes() const { return memory_of(file); }
 };
 
 /// The view is looked up once for all samples of a point.
@@ -198,6 +198,14 @@ private:
 };
 
 } // namespace
+
+std::uint64_t memory_of(const File& file) {
+    AcdfMove parts[ACDF_MAX_MOVES];
+    std::uint64_t sum = file.size() + file.table_bytes();
+    const int inflated = file.memory(parts) - (file.table_bytes() > 0 ? 1 : 0); // the file first, its tables last
+    for (int i = 1; i < inflated; ++i) sum += parts[i].bytes;
+    return sum;
+}
 
 LightSamplerPtr full_cdf_sampler(const compress::Target& target) {
     return std::make_unique<SameEverywhere<LocalFullCdf>>(target);

@@ -1,8 +1,8 @@
 // Every sampler of this library, and of files, as a LightSampler.
 //
 // Targets, files and tables are referred to, not copied, and must outlive what is made of them. Targets are
-// lat-long probes of one channel and nearest lookup (compress::Target); where one is black, or not of that kind,
-// these functions throw std::invalid_argument.
+// lat-long probes (compress::of_texels); where one is black, or not of that kind, these functions throw
+// std::invalid_argument.
 #pragma once
 
 #include "compress/target.h"
@@ -11,6 +11,7 @@
 #include "measure/samplers/light_sampler.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cstdint>
 #include <memory>
@@ -59,8 +60,11 @@ LightSamplerPtr tabulated_brdf_sampler(const TabulatedBrdf& table);
 
 // ---- of files ----
 
-/// A file of an environment, a local environment or a BRDF; std::invalid_argument for tables. `bytes` is the file's
-/// size. BRDFs are turned to the surface's frame (surface_frame); views below the surface sample nothing.
+/// What an open file takes in memory: its bytes, what was inflated of them, and the tables made at load.
+std::uint64_t memory_of(const File& file);
+
+/// A file of an environment, a local environment or a BRDF; std::invalid_argument for tables. `bytes` is memory_of.
+/// BRDFs are turned to the surface's frame (surface_frame); views below the surface sample nothing.
 LightSamplerPtr file_sampler(const File& file);
 /// A local environment by normals alone, also where it stores visibility cells.
 LightSamplerPtr normals_alone_sampler(const File& file);

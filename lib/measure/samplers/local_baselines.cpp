@@ -11,10 +11,10 @@ namespace {
 using compress::Sum;
 using compress::Target;
 
-/// Integrals over the hemisphere above n; L of the target.
+/// Integrals over the hemisphere above n; L of the target: g, but for the irradiance, which is that of f.
 struct Hemisphere {
     double flux = 0.0;             ///< of L
-    double irradiance = 0.0;       ///< of L cos
+    double irradiance = 0.0;       ///< of L cos, of several channels the root of the sum of their squares
     double radiance_cosine2 = 0.0; ///< of L cos^2
     double radiance2_cosine = 0.0; ///< of L^2 cos
 
@@ -24,23 +24,26 @@ struct Hemisphere {
 };
 
 Hemisphere hemisphere(const Target& target, const build::TexelCosines& cosines, const float n[3]) {
-    Sum flux, irradiance, radiance_cosine2, radiance2_cosine;
+    Sum flux, radiance_cosine2, radiance2_cosine, irradiance[3];
     for (std::uint32_t r = 0; r < target.rows; ++r) {
         const float* row = target.row(r);
-        double sum[4] = {0.0, 0.0, 0.0, 0.0};
+        double sum[3] = {}, lit_means[3] = {};
         cosines.for_each_above(n, r, [&](std::uint32_t c, double cosine) {
             const double radiance = row[c], lit = radiance * target.column_measure[c];
+            double means[3];
+            const std::size_t channels = compress::means_of(target, std::size_t{r} * target.columns + c, means);
+            for (std::size_t k = 0; k < channels; ++k) lit_means[k] += means[k] * target.column_measure[c] * cosine;
             sum[0] += lit;
-            sum[1] += lit * cosine;
-            sum[2] += lit * cosine * cosine;
-            sum[3] += lit * radiance * cosine;
+            sum[1] += lit * cosine * cosine;
+            sum[2] += lit * radiance * cosine;
         });
         flux.add(sum[0] * target.row_measure[r]);
-        irradiance.add(sum[1] * target.row_measure[r]);
-        radiance_cosine2.add(sum[2] * target.row_measure[r]);
-        radiance2_cosine.add(sum[3] * target.row_measure[r]);
+        radiance_cosine2.add(sum[1] * target.row_measure[r]);
+        radiance2_cosine.add(sum[2] * target.row_measure[r]);
+        for (std::size_t k = 0; k < 3; ++k) irradiance[k].add(lit_means[k] * target.row_measure[r]);
     }
-    return {flux.value(), irradiance.value(), radiance_cosine2.value(), radiance2_cosine.value()};
+    return {flux.value(), std::hypot(irradiance[0].value(), irradiance[1].value(), irradiance[2].value()),
+            radiance_cosine2.value(), radiance2_cosine.value()};
 }
 
 } // namespace

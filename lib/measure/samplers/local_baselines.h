@@ -1,7 +1,7 @@
 // What one can do today to estimate the irradiance E(n), the integral of f = L max(0, n . omega), from a probe: the
 // baselines of a local environment map, each with its exact relative variance.
 //
-// In all of them the target is a probe, lat-long or octahedral, with one channel and nearest lookup (g is f:
+// In all of them the target is a probe, lat-long or octahedral (compress::of_texels; with nearest lookup g is f:
 // compress::Target); it is referred to, not copied, and must outlive the sampler. Normals are unit. Directions are
 // sampled over whole texels; relative variances take each texel's cosine at its centre (TexelCosines), and are 0
 // where E(n) is.

@@ -13,12 +13,12 @@ namespace acdf::measure {
 
 class ProbeGrid {
 public:
-    /// Throws std::invalid_argument where the target is no probe of one channel and nearest lookup, or black.
+    /// Throws std::invalid_argument where the target is no probe (compress::of_texels), or black.
     explicit ProbeGrid(const compress::Target& target)
         : grid_{target.columns, target.rows, static_cast<std::uint32_t>(target.parameterization)},
           flux_(compress::integral(target)) {
         if (!target.peaks.empty() || target.values.empty())
-            throw std::invalid_argument("a sampler of texels needs a probe of one channel with nearest lookup");
+            throw std::invalid_argument("a sampler of texels needs a probe as texels have it");
         if (!(flux_ > 0.0)) throw std::invalid_argument("a black probe has nothing to sample");
     }
 

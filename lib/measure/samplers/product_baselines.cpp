@@ -1,6 +1,7 @@
 #include "measure/samplers/product_baselines.h"
 
 #include "measure/samplers/ggx_lobe.h"
+#include "measure/samplers/light_samplers.h"
 #include "measure/samplers/point_samplers.h"
 #include "measure/samplers/tiling.h"
 
@@ -119,7 +120,7 @@ std::unique_ptr<LightSampler> half_and_half(const LightSampler& a, const LightSa
 std::unique_ptr<LightSampler> product_tiles_sampler(const compress::Target& target, std::uint32_t columns,
                                                     std::uint32_t rows, const File& brdf) {
     if (brdf.kind() != ACDF_KIND_BRDF) throw std::invalid_argument("tiles are weighed by a BRDF, or ggx");
-    return tiles_of(target, columns, rows, BrdfLobe(brdf.brdf().data()), brdf.size());
+    return tiles_of(target, columns, rows, BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), memory_of(brdf));
 }
 
 std::unique_ptr<LightSampler> product_tiles_sampler(const compress::Target& target, std::uint32_t columns,

@@ -1,9 +1,10 @@
 #include "measure/samplers/product_samplers.h"
 
 #include "measure/samplers/ggx_lobe.h"
+#include "measure/samplers/light_samplers.h"
 #include "measure/samplers/point_samplers.h"
 
-#include <acdf/product.h>
+#include <acdf/product/product.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -43,8 +44,8 @@ template <class AnyLobe>
 std::unique_ptr<LightSampler> made(const File& light, const AnyLobe& lobe, int parts, std::uint64_t brdf_bytes) {
     using Table = ProductTable<AnyLobe>;
     using Made = MovedToPoints<Table, ProductAtPoint<AnyLobe>>;
-    const ProductOptions options{parts};
-    const std::uint64_t bytes = light.size() + brdf_bytes;
+    const ProductOptions options{parts, acdf_product_vectors()};
+    const std::uint64_t bytes = memory_of(light) + brdf_bytes;
     if (light.kind() == ACDF_KIND_LOCAL)
         return std::make_unique<Made>(Table{ProductSampler<AnyLobe>(light.local().data(), lobe, options), bytes});
     if (light.kind() == ACDF_KIND_ENVIRONMENT)
@@ -64,7 +65,7 @@ int product_parts(std::uint32_t samples) {
 std::unique_ptr<LightSampler> product_sampler(const File& light, const File& brdf, int parts) {
     if (brdf.kind() != ACDF_KIND_BRDF)
         throw std::invalid_argument("the second part of a product is a BRDF, or ggx");
-    return made(light, BrdfLobe(brdf.brdf().data()), parts, brdf.size());
+    return made(light, BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), parts, memory_of(brdf));
 }
 
 std::unique_ptr<LightSampler> product_sampler(const File& light, double alpha, int parts) {

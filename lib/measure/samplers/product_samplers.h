@@ -1,9 +1,10 @@
-// Samplers of light times cosine times BRDF, for renderings and timings: acdf/product.h over files.
+// Samplers of light times cosine times BRDF, for renderings and timings: acdf/product/product.h over files.
 #pragma once
 
 #include "measure/samplers/light_sampler.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cstdint>
 #include <memory>

@@ -1,9 +1,10 @@
 #include "measure/samplers/product_warp.h"
 
 #include "measure/samplers/ggx_lobe.h"
+#include "measure/samplers/light_samplers.h"
 #include "measure/samplers/point_samplers.h"
 
-#include <acdf/product.h>
+#include <acdf/product/product.h>
 
 #include <algorithm>
 #include <cmath>
@@ -188,14 +189,14 @@ template <class AnyLobe>
 std::unique_ptr<LightSampler> warp_of(const File& light, const AnyLobe& lobe, std::uint64_t brdf_bytes) {
     using Table = WarpTable<AnyLobe>;
     return std::make_unique<MovedToPoints<Table, WarpAtPoint<AnyLobe>>>(
-        Table{LightAtPoint(light), lobe, light.size() + brdf_bytes});
+        Table{LightAtPoint(light), lobe, memory_of(light) + brdf_bytes});
 }
 
 } // namespace
 
 std::unique_ptr<LightSampler> product_warp_sampler(const File& light, const File& brdf) {
     if (brdf.kind() != ACDF_KIND_BRDF) throw std::invalid_argument("numbers are bent towards a BRDF, or ggx");
-    return warp_of(light, BrdfLobe(brdf.brdf().data()), brdf.size());
+    return warp_of(light, BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), memory_of(brdf));
 }
 
 std::unique_ptr<LightSampler> product_warp_sampler(const File& light, double alpha) {

@@ -5,6 +5,7 @@
 #include "measure/samplers/light_sampler.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <memory>
 

@@ -146,22 +146,25 @@ double TilingOnTheFly::relative_variance(const float n[3]) const {
     std::vector<double> bound(tiles()), cosine2(columns_.at.size() - 1), across(2 * cosine2.size());
     largest_cosines(n, across.data(), bound.data());
     const double total = std::inner_product(bound.begin(), bound.end(), flux_.begin(), 0.0);
-    Sum irradiance, second;
+    Sum irradiance[3], second;
     for (std::uint32_t r = 0; r < target_.rows; ++r) {
         const float* row = target_.row(r);
-        double sum = 0.0;
+        double lit_means[3] = {};
         std::fill(cosine2.begin(), cosine2.end(), 0.0);
         cosines_.for_each_above(n, r, [&](std::uint32_t c, double cosine) {
             const double lit = row[c] * target_.column_measure[c] * cosine;
-            sum += lit;
+            double means[3];
+            const std::size_t channels = compress::means_of(target_, std::size_t{r} * target_.columns + c, means);
+            for (std::size_t k = 0; k < channels; ++k)
+                lit_means[k] += means[k] * target_.column_measure[c] * cosine;
             cosine2[columns_.tile[c]] += lit * cosine;
         });
-        irradiance.add(sum * target_.row_measure[r]);
+        for (std::size_t k = 0; k < 3; ++k) irradiance[k].add(lit_means[k] * target_.row_measure[r]);
         const double* of_row = bound.data() + rows_.tile[r] * cosine2.size();
         for (std::size_t c = 0; c < cosine2.size(); ++c)
             if (cosine2[c] > 0.0) second.add(cosine2[c] * target_.row_measure[r] / of_row[c]);
     }
-    const double mean = irradiance.value();
+    const double mean = std::hypot(irradiance[0].value(), irradiance[1].value(), irradiance[2].value());
     return mean > 0.0 ? std::max(0.0, total * second.value() / (mean * mean) - 1.0) : 0.0;
 }
 

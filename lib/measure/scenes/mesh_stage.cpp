@@ -13,10 +13,18 @@ namespace acdf::measure {
 MeshStage::MeshStage(std::shared_ptr<const input::MeshSurface> surface, bool turned, const compress::Target& target,
                      std::uint32_t count)
     : matte_(input::open_brdf("lambert")) {
-    if (!target.peaks.empty() || target.parameterization != ACDF_PARAM_LATLONG)
-        throw std::invalid_argument("positions are measured under a lat-long probe with nearest lookup");
-    for (const float value : target.values) rgb_.insert(rgb_.end(), 3, value);
+    if (target.means.size() > 1 || target.parameterization != ACDF_PARAM_LATLONG)
+        throw std::invalid_argument("positions are measured under a lat-long probe of one channel");
+    const std::vector<float>& means = target.means.empty() ? target.values : target.means[0];
+    for (const float value : means) rgb_.insert(rgb_.end(), 3, value);
     scene_.light = {target.columns, target.rows, rgb_.data()};
+    if (!target.means.empty()) {
+        for (std::size_t i = 0; i < means.size(); ++i) {
+            const double ratio = means[i] > 0.0f ? double{target.values[i]} / double{means[i]} : 1.0;
+            spread_.push_back(static_cast<float>(ratio * ratio));
+        }
+        scene_.light.spread = spread_.data();
+    }
     scene_.materials = {{matte_.get(), {1.0, 1.0, 1.0}}};
     scene_.geometry.objects = {{Mesh{surface}, 0, true}};
     scene_.geometry.turned = turned;

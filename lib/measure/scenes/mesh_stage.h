@@ -15,7 +15,7 @@ namespace acdf::measure {
 
 class MeshStage {
 public:
-    /// `target`: a lat-long probe of one channel and nearest lookup, else std::invalid_argument; referred to.
+    /// `target`: a lat-long probe of one channel, else std::invalid_argument.
     /// `turned`: as of Geometry. `count` points on both sides of the mesh; the same ones every time.
     MeshStage(std::shared_ptr<const input::MeshSurface> surface, bool turned, const compress::Target& target,
               std::uint32_t count);
@@ -27,7 +27,7 @@ public:
 
 private:
     std::unique_ptr<input::Brdf> matte_;
-    std::vector<float> rgb_;
+    std::vector<float> rgb_, spread_;
     Scene scene_;
     std::vector<ScenePoint> points_;
 };

@@ -75,13 +75,14 @@ class PointMoments {
 public:
     explicit PointMoments(const PartsAtPoint& of) : of_(of), means_(of.parts_.size(), 0.0) {}
 
-    void add(double f, const Texel& t) {
+    /// `spread`: of f^2 over the texel, beside the square of its mean f.
+    void add(double f, double spread, const Texel& t) {
         const double p = of_.density(t.rounded, own_);
         if (!(p > 0.0)) {
             ++lost;
             return;
         }
-        square_ += f * f / p * t.solid_angle;
+        square_ += spread * f * f / p * t.solid_angle;
         for (std::size_t i = 0; i < own_.size(); ++i) means_[i] += own_[i] * f / p * t.solid_angle;
     }
     double variance() const {
@@ -107,7 +108,7 @@ PointSums sums_at(const ScenePoint& point, const ProbeLight& light, const std::v
             const double f = value(point, light, column, row, t);
             if (!(f > 0.0)) continue;
             out.mean += f * t.solid_angle;
-            for (PointMoments& one : moments) one.add(f, t);
+            for (PointMoments& one : moments) one.add(f, light.spread_of(column, row), t);
         }
     for (const PointMoments& one : moments) {
         out.variance.push_back(one.variance());

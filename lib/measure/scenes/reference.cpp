@@ -57,8 +57,11 @@ Rgb refined(const ScenePoint& point, const ProbeLight& light, std::uint32_t colu
     for (std::uint32_t i = 0; i < kRefinement; ++i) {
         const double z = above + (below - above) * ((i + 0.5) / kRefinement);
         for (std::uint32_t k = 0; k < kRefinement; ++k) {
-            const Rgb part = lit(point, direction(azimuth(column + (k + 0.5) / kRefinement, light.columns), z));
-            for (std::size_t c = 0; c < 3; ++c) mean[c] += part[c] / (kRefinement * kRefinement);
+            const Vec3 wi = direction(azimuth(column + (k + 0.5) / kRefinement, light.columns), z);
+            const float rounded[3] = {static_cast<float>(wi[0]), static_cast<float>(wi[1]),
+                                      static_cast<float>(wi[2])};
+            const Rgb part = lit(point, wi), radiance = light.radiance(rounded);
+            for (std::size_t c = 0; c < 3; ++c) mean[c] += part[c] * radiance[c] / (kRefinement * kRefinement);
         }
     }
     return mean;
@@ -110,10 +113,8 @@ private:
         so_far_ += luminance(sum);
     }
     void refine(const Term& term) {
-        const Rgb radiance = light_.texel(term.column, term.row),
-                  mean = refined(point_, light_, term.column, term.row);
-        for (std::size_t k = 0; k < 3; ++k)
-            sum_[k].add(mean[k] * radiance[k] * centres_.solid_angle[term.row] - term.value[k]);
+        const Rgb mean = refined(point_, light_, term.column, term.row);
+        for (std::size_t k = 0; k < 3; ++k) sum_[k].add(mean[k] * centres_.solid_angle[term.row] - term.value[k]);
     }
     Rgb total() const { return {sum_[0].value(), sum_[1].value(), sum_[2].value()}; }
 

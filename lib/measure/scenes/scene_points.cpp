@@ -1,5 +1,6 @@
 #include "measure/scenes/scene_points.h"
 
+#include "measure/map_lookup.h"
 #include "measure/surface_frame.h"
 
 #include <acdf/sample.h>
@@ -31,10 +32,12 @@ bool is_inside(const Shape& shape, const Hit& hit) {
 } // namespace
 
 Rgb ProbeLight::radiance(const float direction[3]) const {
-    std::uint32_t square[2];
-    double column;
-    if (!acdf_sphere_square(columns, rows, direction, square, &column)) return {};
-    return texel(square[0], square[1]);
+    MapLookup::Blend blend;
+    if (!MapLookup(columns, rows, ACDF_PARAM_LATLONG, filter).find(direction, blend)) return {};
+    Rgb out{};
+    for (std::size_t i = 0; i < blend.texel.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k) out[k] += blend.weight[i] * double{rgb[3 * blend.texel[i] + k]};
+    return out;
 }
 
 ScenePoint::ScenePoint(const Scene& scene, const Ray& ray, const Hit& hit)

@@ -10,14 +10,21 @@
 
 namespace acdf::measure {
 
-/// Radiance of a lat-long probe, constant on texels (docs/conventions.md).
+/// Radiance of a lat-long probe (docs/conventions.md): constant on texels, or interpolated between their centres.
 struct ProbeLight {
     std::uint32_t columns = 0, rows = 0;
     const float* rgb = nullptr; ///< rows x columns x 3, >= 0
+    AcdfFilter filter = ACDF_FILTER_NEAREST;
+    const float* means = nullptr;  ///< of the radiance over each texel, as `rgb`; null: they are the same
+    const float* spread = nullptr; ///< mean square of the radiance over a texel, over its mean's; null: 1
 
+    /// The mean over a texel.
     Rgb texel(std::uint32_t column, std::uint32_t row) const {
-        const float* t = rgb + 3 * (std::size_t{row} * columns + column);
+        const float* t = (means ? means : rgb) + 3 * (std::size_t{row} * columns + column);
         return {double{t[0]}, double{t[1]}, double{t[2]}};
+    }
+    double spread_of(std::uint32_t column, std::uint32_t row) const {
+        return spread ? double{spread[std::size_t{row} * columns + column]} : 1.0;
     }
     Rgb radiance(const float direction[3]) const;
 };

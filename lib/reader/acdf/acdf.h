@@ -17,17 +17,21 @@
 #define ACDF_ACDF_H
 
 #include <acdf/allocator.h>
-#include <acdf/brdf.h>
 #include <acdf/layout.h>
+#include <acdf/sample.h>
+#ifndef ACDF_ENVIRONMENT_ONLY
+#include <acdf/brdf.h>
 #include <acdf/linked.h>
 #include <acdf/local.h>
 #include <acdf/moved.h>
-#include <acdf/sample.h>
 #include <acdf/table.h>
+#endif
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+typedef struct AcdfFile AcdfFile;
 
 /* What kind of failure; the numbers are stable, and those of acdf::ErrorCode. */
 typedef enum AcdfErrorCode {
@@ -41,12 +45,12 @@ typedef enum AcdfErrorCode {
 } AcdfErrorCode;
 
 /* Why a file was not loaded, or not served. */
-struct AcdfError {
+typedef struct AcdfError {
     AcdfErrorCode code;
     int rule;          /* number of the broken rule of SPEC.md, 0 if none */
     uint64_t offset;   /* byte in the file where it shows */
     char message[240]; /* one line, UTF-8, terminated: what is wrong and where */
-};
+} AcdfError;
 
 /* Reads and checks the file at `path`. Null on failure. `error` may be null; it is written on success too. */
 AcdfFile* acdf_open(const char* path, AcdfError* error);
@@ -77,6 +81,7 @@ void acdf_close(AcdfFile* file);
 /* The view of an environment file. Returns 1, or 0 (and `out` unset) where the file is of another kind or null.
  * `out` may be null: whether it is of that kind. */
 int acdf_environment(const AcdfFile* file, AcdfEnvironment* out);
+#ifndef ACDF_ENVIRONMENT_ONLY
 /* The same for a local environment file, to be used with acdf/local.h. */
 int acdf_local(const AcdfFile* file, AcdfLocal* out);
 /* The same for a BRDF file, to be used with acdf/brdf.h. */
@@ -87,6 +92,7 @@ int acdf_table(const AcdfFile* file, AcdfTable* out);
 /* The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how many
  * there are (acdf/moved.h). */
 int acdf_memory(const AcdfFile* file, AcdfMove* moves);
+#endif
 
 /* What a file says of itself, and its parts as they lie in it: valid until it is closed. `file` is not null. */
 AcdfKind acdf_kind(const AcdfFile* file);

@@ -9,6 +9,7 @@
 #define ACDF_BLEND_H
 
 #include <acdf/sample.h>
+#include <acdf/short_curves.h>
 
 #ifdef __cplusplus
 extern "C" {

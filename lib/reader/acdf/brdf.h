@@ -71,46 +71,6 @@ ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view,
     return acdf_brdf_cell_pdf(brdf, p, range, &place, wi);
 }
 
-/* The same by vectors of this process's processor, which the linked library has: files that it opens name them. Of
- * files with runtime tables that have a grid; samples, of views that weigh something and tables with guesses. */
-typedef struct AcdfBrdfVectors {
-    void (*view_pdfs)(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], size_t count,
-                      float* out);
-    void (*view_samples)(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double (*u)[2], size_t count,
-                         AcdfDirectionSample* out);
-} AcdfBrdfVectors;
-
-enum { ACDF_BRDF_FEWEST = 2 }; /* fewer are not worth vectors */
-
-/* The same of wi[i] into out[i], i < count: they wait for memory together. */
-ACDF_FN void acdf_brdf_view_pdfs(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], size_t count,
-                                 float* out) {
-    enum { TOGETHER = 16 };
-    AcdfBrdfPosition place[TOGETHER];
-    uint32_t cell[TOGETHER];
-    int found[TOGETHER];
-    size_t first, i;
-    if (!ACDF_SIDE_BY_SIDE || !brdf->tables || !brdf->tables->grid) {
-        for (i = 0; i < count; ++i) out[i] = acdf_brdf_view_pdf(brdf, view, wi[i]);
-        return;
-    }
-#if ACDF_SIDE_BY_SIDE
-    if (brdf->vectors && count >= ACDF_BRDF_FEWEST) {
-        brdf->vectors->view_pdfs(brdf, view, wi, count, out);
-        return;
-    }
-#endif
-    for (first = 0; first < count; first += TOGETHER) {
-        const size_t some = count - first < TOGETHER ? count - first : (size_t)TOGETHER;
-        for (i = 0; i < some; ++i) {
-            found[i] = acdf_brdf_pair_find(brdf, view, wi[first + i], &place[i], &cell[i]);
-            if (found[i]) ACDF_PREFETCH(acdf_brdf_parts(brdf->tables, cell[i], view->lower));
-        }
-        for (i = 0; i < some; ++i)
-            out[first + i] = found[i] ? acdf_brdf_pair_found(brdf, view, cell[i], &place[i]) : 0.0f;
-    }
-}
-
 /* Density per steradian with which acdf_brdf_sample samples wi for wo. 0 where none falls, for wo below the surface
  * and for directions that are NaN or not of unit length. */
 ACDF_FN float acdf_brdf_pdf(const AcdfBrdf* brdf, const float wo[3], const float wi[3]) {
@@ -217,20 +177,6 @@ ACDF_FN AcdfDirectionSample acdf_brdf_view_sample(const AcdfBrdf* brdf, const Ac
     if (brdf->tables && brdf->tables->guesses && acdf_brdf_pair_sample(brdf, view, u0, u1, &out)) return out;
 #endif
     return acdf_brdf_view_walk(brdf, view, u0, u1);
-}
-
-/* The same of u[i] into out[i], i < count, to the bit. */
-ACDF_FN void acdf_brdf_view_samples(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double (*u)[2],
-                                    size_t count, AcdfDirectionSample* out) {
-    size_t i;
-#if ACDF_SIDE_BY_SIDE
-    if (brdf->vectors && count >= ACDF_BRDF_FEWEST && brdf->tables && brdf->tables->grid && brdf->tables->guesses &&
-        view->pair[0] + view->pair[1] > 0.0) {
-        brdf->vectors->view_samples(brdf, view, u, count, out);
-        return;
-    }
-#endif
-    for (i = 0; i < count; ++i) out[i] = acdf_brdf_view_sample(brdf, view, u[i][0], u[i][1]);
 }
 
 /* A direction about as acdf_brdf_view_sample samples it, to look where much is reflected; pdf 0: none. */

@@ -7,6 +7,7 @@
 #define ACDF_BRDF_TABLES_H
 
 #include <acdf/blend.h>
+#include <acdf/squares.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -11,16 +11,15 @@ extern "C" {
 struct AcdfBrdfVectors;
 
 typedef struct AcdfBrdf {
-    AcdfBlend blend;                       /* blend.tiles is null where each bin has a tree of its own */
-    const uint8_t* tree;                   /* chunk TREE */
-    const AcdfBin* bins;                   /* theta_count x phi_count */
-    const AcdfViews* views;                /* chunk VIEW */
-    const float* nodes;                    /* theta_count, behind it */
-    uint32_t columns;                      /* axis 0, phi_h */
-    uint32_t rows;                         /* axis 1, cos_theta_h */
-    double total;                          /* sum of the bins' albedos */
-    const AcdfBrdfTables* tables;          /* runtime tables; null: walk */
-    const struct AcdfBrdfVectors* vectors; /* acdf/brdf.h; null: several calls are made by scalar code */
+    AcdfBlend blend;              /* blend.tiles is null where each bin has a tree of its own */
+    const uint8_t* tree;          /* chunk TREE */
+    const AcdfBin* bins;          /* theta_count x phi_count */
+    const AcdfViews* views;       /* chunk VIEW */
+    const float* nodes;           /* theta_count, behind it */
+    uint32_t columns;             /* axis 0, phi_h */
+    uint32_t rows;                /* axis 1, cos_theta_h */
+    double total;                 /* sum of the bins' albedos */
+    const AcdfBrdfTables* tables; /* runtime tables; null: walk */
 } AcdfBrdf;
 
 /* What serves a view: which rows or which tree, and the turn that brings wo into the plane of x and z. */

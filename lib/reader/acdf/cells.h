@@ -1,10 +1,10 @@
 /* Where a direction lies in the pieces of the sphere (acdf/pieces.h), or on the octahedral square
- * (acdf/shader_square.h), by which the runtime tables of local environments answer. */
+ * (acdf/octahedral_float.h), by which the runtime tables of local environments answer. */
 #ifndef ACDF_CELLS_H
 #define ACDF_CELLS_H
 
+#include <acdf/octahedral_float.h>
 #include <acdf/pieces.h>
-#include <acdf/shader_square.h>
 #include <acdf/sphere.h>
 #include <acdf/squares.h>
 

@@ -9,8 +9,7 @@
 #ifndef ACDF_HALVINGS_H
 #define ACDF_HALVINGS_H
 
-#include <acdf/layout.h>
-#include <acdf/tree.h>
+#include <acdf/elementary.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -2,7 +2,8 @@
  * of acdf/sample.h, local.h, brdf.h and table.h, such as Python, Rust, Julia or C#. All arguments are numbers and
  * pointers to them. Each gives what the inline function gives, bit for bit, where that is compiled with
  * -ffp-contract=off as the library is (else directions may differ in the last bit on processors that fuse products
- * and sums: gcc's -march=native); all are thread-safe, and but for acdf_brdf_waves allocate nothing.
+ * and sums: gcc's -march=native); all are thread-safe and
+ * allocate nothing. Arrays of local environments and BRDFs take less time by acdf/batch/batch_c.h.
  *
  * Arrays are packed: two doubles u in [0, 1] a sample, three floats a direction, normal or view (unit vectors;
  * normals of any length > 0), a float a density (sr^-1). They may not overlap. Results have `count` items. Where
@@ -21,7 +22,6 @@ extern "C" {
 #endif
 
 typedef struct AcdfFile AcdfFile;
-typedef struct AcdfError AcdfError;
 
 /* ---- environments ---- */
 
@@ -29,7 +29,6 @@ typedef struct AcdfError AcdfError;
 float acdf_sample_environment(const AcdfFile* file, double u0, double u1, float direction[3]);
 /* Density of a direction; 0 where none falls, for NaN and for directions that are not of unit length. */
 float acdf_pdf_environment(const AcdfFile* file, const float direction[3]);
-/* Arrays are served by the processor's vector instructions where it has them (acdf/wavefront.h). */
 int acdf_sample_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
                                   float* pdfs);
 int acdf_pdf_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs);
@@ -41,8 +40,7 @@ int acdf_invert_environment_array(const AcdfFile* file, const float* directions,
 /* Density 0, and the direction unset, where the normal is zero or NaN or nothing shines on it. */
 float acdf_sample_local(const AcdfFile* file, const float normal[3], double u0, double u1, float direction[3]);
 float acdf_pdf_local(const AcdfFile* file, const float normal[3], const float direction[3]);
-/* Directions are 0 where their density is. Arrays are served as those of environments are, by waves of normals
- * where `each` is 1, and of samples at one shading point where it is more. */
+/* Directions are 0 where their density is. A point is looked up once for all that it serves. */
 int acdf_sample_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
                             float* directions, float* pdfs);
 int acdf_pdf_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
@@ -64,18 +62,6 @@ int acdf_invert_brdf_array(const AcdfFile* file, const float* wo, size_t each, c
                            double* u);
 /* In [0, 1], about, of `count` views: acdf_brdf_albedo. */
 int acdf_albedo_brdf_array(const AcdfFile* file, const float* wo, size_t count, double* albedos);
-
-/* The same samples and densities by the processor's vector instructions (acdf/wavefront.h), where it has them: a
- * fraction of the time, bit for bit, by tables of some four times the file beside its own. Null where memory fails
- * or the file is of another kind. `error` may be null. Ends with acdf_brdf_waves_close, before its file does. */
-typedef struct AcdfBrdfWaves AcdfBrdfWaves;
-AcdfBrdfWaves* acdf_brdf_waves(const AcdfFile* file, AcdfError* error);
-int acdf_brdf_waves_draw(const AcdfBrdfWaves* waves, const float* wo, size_t each, const double* u, size_t count,
-                         float* wi, float* pdfs);
-int acdf_brdf_waves_density(const AcdfBrdfWaves* waves, const float* wo, size_t each, const float* wi, size_t count,
-                            float* pdfs);
-uint64_t acdf_brdf_waves_bytes(const AcdfBrdfWaves* waves); /* of the tables; 0: there are none */
-void acdf_brdf_waves_close(AcdfBrdfWaves* waves);           /* null is allowed */
 
 /* ---- tables: u and x have a number a sampled axis, `index` one an indexed axis (null where there is none) ---- */
 

@@ -23,12 +23,11 @@ typedef struct AcdfLocal {
     uint32_t columns;      /* of that grid */
     uint32_t rows;
     double cosine_share;
-    const AcdfLocalTables* tables;          /* runtime tables; null: splits are walked */
-    const AcdfPartner* partner;             /* null: to be used alone */
-    AcdfVisibilityTable visibility;         /* its header is null where there are no visibility cells */
-    AcdfPortalTable portals;                /* its header is null where there are none */
-    const struct AcdfLocalVectors* vectors; /* acdf/cut_wave.h; null: several calls are made by scalar code */
-    AcdfFast fast;                          /* the fast shape: the blend has no rows then, and roots are of grids */
+    const AcdfLocalTables* tables;  /* runtime tables; null: splits are walked */
+    const AcdfPartner* partner;     /* null: to be used alone */
+    AcdfVisibilityTable visibility; /* its header is null where there are no visibility cells */
+    AcdfPortalTable portals;        /* its header is null where there are none */
+    AcdfFast fast;                  /* the fast shape: the blend has no rows then, and roots are of grids */
 } AcdfLocal;
 
 /* Runtime tables of the fast shape: what they have of its rows. */

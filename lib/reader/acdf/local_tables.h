@@ -44,6 +44,8 @@ typedef struct AcdfFacet {
     uint32_t row[3];  /* of the bins */
 } AcdfFacet;
 
+enum { ACDF_MOST_GROUP_HEARTS = 448 }; /* files of the fast shape with more groups have no `group_hearts` */
+
 /* Offsets in words from the start of this struct, which the arrays follow. */
 typedef struct AcdfLocalTables {
     uint32_t words; /* of all */

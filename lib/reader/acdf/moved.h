@@ -78,7 +78,6 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
     ACDF_MOVE(uint16_t, local->fast.groups);
     ACDF_MOVE(uint8_t, local->fast.tiles);
     ACDF_MOVE(uint16_t, local->fast.upper);
-    local->vectors = 0; /* of this process */
 }
 
 /* The same of a BRDF. */
@@ -89,7 +88,6 @@ static inline void acdf_move_brdf(AcdfBrdf* brdf, const AcdfMove* moves, int cou
     ACDF_MOVE(AcdfViews, brdf->views);
     ACDF_MOVE(float, brdf->nodes);
     ACDF_MOVE(AcdfBrdfTables, brdf->tables);
-    brdf->vectors = 0;
 }
 
 /* The same of a table. */

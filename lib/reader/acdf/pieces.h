@@ -7,6 +7,7 @@
 #ifndef ACDF_PIECES_H
 #define ACDF_PIECES_H
 
+#include <acdf/atan_float.h>
 #include <acdf/dialect.h>
 
 #ifdef __cplusplus
@@ -61,15 +62,6 @@ ACDF_FN4(AcdfVector, acdf_piece_direction, ACDF_F32, azimuth, ACDF_F32, cap, ACD
 }
 
 /* ---- finding ---------------------------------------------------------------------------------------- */
-
-/* atan(t) for t in [-1, 1], interpolated at the Chebyshev nodes of t^2; error below 2e-7. */
-ACDF_FN1(ACDF_F32, acdf_atan_float, ACDF_F32, t) {
-    ACDF_LET(ACDF_F32, q) = t * t;
-    ACDF_LET(ACDF_F32, q2) = q * q;
-    ACDF_LET(ACDF_F32, low) = (0.99999988f + q * -0.33331813f) + q2 * (0.19966962f + q * -0.14003290f);
-    ACDF_LET(ACDF_F32, high) = (0.098688655f + q * -0.058829753f) + q2 * (0.023780519f + q * -0.0045597920f);
-    return t * (low + q2 * q2 * high);
-}
 
 /* A direction as pieces see it. */
 ACDF_STRUCT_BEGIN(AcdfDirectionKeys)

@@ -1,5 +1,6 @@
 // Loads and checks .acdf files. C++17, no exceptions, no RTTI; needs zlib alone.
 //
+//   #include <acdf/environment_view.h>
 //   acdf::File file;
 //   if (acdf::Status status = acdf::File::open("probe.acdf", file); !status.ok()) { ... status.message ... }
 //   acdf::EnvironmentView sky = file.environment();
@@ -15,13 +16,26 @@
 #pragma once
 
 #include <acdf/allocator.h>
-#include <acdf/moved.h>
-#include <acdf/views.h>
+#include <acdf/layout.h>
 
 #include <cstddef>
 #include <cstdint>
 
+struct AcdfFile;
+#ifndef ACDF_ENVIRONMENT_ONLY
+struct AcdfMove;
+struct AcdfBlend;
+struct AcdfFast;
+#endif
+
 namespace acdf {
+
+class EnvironmentView;
+#ifndef ACDF_ENVIRONMENT_ONLY
+class LocalEnvironmentView;
+class BrdfView;
+class TableView;
+#endif
 
 /// What kind of failure; the numbers are stable.
 enum class ErrorCode : int {
@@ -72,9 +86,6 @@ struct Text {
     std::size_t size = 0;
 };
 
-struct Parts;
-class TreeSurvey;
-
 /// A checked file. Movable, not copyable.
 class File {
 public:
@@ -93,82 +104,51 @@ public:
                               const LoadOptions& options = {}) noexcept;
 
     /// Whether no file was loaded: then only this may be asked.
-    bool empty() const noexcept { return bytes_ == nullptr; }
+    bool empty() const noexcept { return opened_ == nullptr; }
     // Everything below asks for a file that is not empty.
     /// Kind, and the parts of the file as they lie in it; axis i < axis_count. A tree of halvings has no bins.
-    AcdfKind kind() const noexcept { return static_cast<AcdfKind>(header().kind); }
-    const AcdfHeader& header() const noexcept { return *reinterpret_cast<const AcdfHeader*>(bytes_); }
-    const AcdfDescription& description() const noexcept { return *description_; }
-    const AcdfAxis& axis(std::uint32_t i) const noexcept { return axes_[i]; }
-    const AcdfBin& bin(std::uint32_t i) const noexcept { return bins_[i]; }
-    bool has_bins() const noexcept { return bins_ != nullptr; }
+    AcdfKind kind() const noexcept;
+    const AcdfHeader& header() const noexcept;
+    const AcdfDescription& description() const noexcept;
+    const AcdfAxis& axis(std::uint32_t i) const noexcept;
+    const AcdfBin& bin(std::uint32_t i) const noexcept;
+    bool has_bins() const noexcept;
     /// Chunk TREE, and its size in units of two bytes, in which offsets in it are counted.
-    const std::uint8_t* tree() const noexcept { return tree_; }
-    /// What bins share; `tiles` is null where each has a tree of its own.
-    const AcdfBlend& blend() const noexcept { return blend_; }
-    /// Of the fast shape of local environments; its pointers are null where a file has another one.
-    const AcdfFast& fast() const noexcept { return fast_; }
-    std::uint32_t tree_units() const noexcept { return tree_units_; }
-    std::uint64_t size() const noexcept { return size_; }
+    const std::uint8_t* tree() const noexcept;
+    std::uint32_t tree_units() const noexcept;
+    std::uint64_t size() const noexcept;
     /// What the file is to be combined with; null: it is to be used alone.
-    const AcdfPartner* partner() const noexcept { return partner_; }
+    const AcdfPartner* partner() const noexcept;
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
-    std::uint64_t table_bytes() const noexcept {
-        return 4 * std::uint64_t{halved_         ? halved_->words
-                                 : local_tables_ ? local_tables_->words
-                                 : brdf_tables_  ? brdf_tables_->words
-                                 : entries_      ? entries_->words
-                                                 : 0};
-    }
-
-    /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
-    /// many there are (acdf/moved.h).
-    int memory(AcdfMove* moves) const noexcept;
+    std::uint64_t table_bytes() const noexcept;
 
     /// Metadata pairs; `count` is 0 where the file carries none.
-    std::uint32_t metadata_count() const noexcept { return metadata_count_; }
+    std::uint32_t metadata_count() const noexcept;
     void metadata(std::uint32_t i, Text& key, Text& value) const noexcept;
     /// The value of `key`, empty where absent.
     Text metadata(const char* key) const noexcept;
 
-    /// The view of an environment file: only where kind() == ACDF_KIND_ENVIRONMENT.
+    /// The view of an environment file (acdf/environment_view.h): only where kind() == ACDF_KIND_ENVIRONMENT.
     EnvironmentView environment() const noexcept;
+#ifndef ACDF_ENVIRONMENT_ONLY
+    // The views of the other kinds are in acdf/views.h.
     /// The view of a local environment file: only where kind() == ACDF_KIND_LOCAL.
     LocalEnvironmentView local() const noexcept;
     /// The view of a BRDF file: only where kind() == ACDF_KIND_BRDF.
     BrdfView brdf() const noexcept;
     /// The view of a table file: only where kind() == ACDF_KIND_TABLE.
     TableView table() const noexcept;
+    /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
+    /// many there are (acdf/moved.h).
+    int memory(AcdfMove* moves) const noexcept;
+    /// What bins share; `tiles` is null where each has a tree of its own.
+    const AcdfBlend& blend() const noexcept;
+    /// Of the fast shape of local environments; its pointers are null where a file has another one.
+    const AcdfFast& fast() const noexcept;
+#endif
 
 private:
-    const std::uint8_t* bytes_ = nullptr;
-    std::uint64_t size_ = 0;
-    const AcdfDescription* description_ = nullptr;
-    const AcdfAxis* axes_ = nullptr;
-    const AcdfBin* bins_ = nullptr;
-    const std::uint8_t* tree_ = nullptr;
-    std::uint32_t tree_units_ = 0;
-    AcdfBlend blend_ = {};
-    AcdfFast fast_ = {};
-    const AcdfLocalHeader* local_ = nullptr;
-    const AcdfBrightTile* bright_tiles_ = nullptr;
-    const AcdfPartner* partner_ = nullptr;
-    AcdfVisibilityTable visibility_ = {};
-    AcdfPortalTable portals_ = {};
-    const AcdfViews* views_ = nullptr;
-    const float* nodes_ = nullptr;
-    const std::uint8_t* metadata_ = nullptr;
-    std::uint32_t metadata_count_ = 0;
-    AcdfHalvedTree* halved_ = nullptr;
-    AcdfLocalTables* local_tables_ = nullptr;
-    AcdfBrdfTables* brdf_tables_ = nullptr;
-    AcdfEntries* entries_ = nullptr;
-    AcdfAllocator allocator_ = {};
-    AcdfBlock owned_[3] = {}; // the file's bytes; inflated chunks; runtime tables
-
-    void make_tables(const TreeSurvey& survey) noexcept;
-    bool make_halved(const Parts& parts, bool lookup) noexcept;
-    void release() noexcept;
+    AcdfFile* opened_ = nullptr;
 };
 
 } // namespace acdf

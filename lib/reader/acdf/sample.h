@@ -17,7 +17,10 @@
 #include <acdf/halvings.h>
 #include <acdf/partner.h>
 #include <acdf/random.h>
-#include <acdf/short_curves.h>
+#ifndef ACDF_ENVIRONMENT_ONLY
+#include <acdf/tree.h>
+#include <acdf/widen.h>
+#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -148,6 +151,20 @@ ACDF_INLINE float acdf_environment_halved_pdf(const AcdfEnvironment* env, const 
                : acdf_environment_halved_pdf_at_border(env, direction);
 }
 
+/* The cell that holds a square, and the random numbers that lead there. Returns its probability. */
+ACDF_INLINE double acdf_environment_halved_find(const AcdfEnvironment* env, const uint32_t square[2],
+                                                AcdfRange range[2], AcdfStratum strata[2]) {
+    AcdfSpan steps[2];
+    const double p = acdf_environment_halved_cell(env, square, steps, range);
+    int axis;
+    for (axis = 0; axis < 2; ++axis) {
+        strata[axis].low = (double)steps[axis].end[0] * 0x1p-31;
+        strata[axis].width = acdf_span_share(&steps[axis]);
+    }
+    return p;
+}
+
+#ifndef ACDF_ENVIRONMENT_ONLY
 /* ---- trees of curves --------------------------------------------------------------------------------- */
 
 /* acdf_environment_sample by curves. */
@@ -162,6 +179,35 @@ ACDF_OUTLINE AcdfDirectionSample acdf_environment_curves_sample(const AcdfEnviro
     return acdf_grid_position(&grid, range, u, p);
 }
 
+/* acdf_environment_halved_find by curves. */
+ACDF_FN double acdf_environment_curves_find(const AcdfEnvironment* env, const uint32_t square[2],
+                                            AcdfRange range[2], AcdfStratum strata[2]) {
+    int axis;
+    acdf_sphere_ranges(env->columns, env->rows, range);
+    for (axis = 0; axis < 2; ++axis) {
+        strata[axis].low = 0.0;
+        strata[axis].width = 1.0;
+    }
+    return acdf_tree_find(env->tree, env->root, square, range, strata);
+}
+
+/* acdf_environment_pdf by curves. */
+ACDF_OUTLINE float acdf_environment_curves_pdf(const AcdfEnvironment* env, const float direction[3]) {
+    const AcdfGrid grid = acdf_environment_grid(env);
+    AcdfRange range[2];
+    AcdfStratum strata[2];
+    double t[2], position[2], p;
+    uint32_t square[2];
+    if (!acdf_grid_square(&grid, direction, square, position)) return 0.0f;
+    p = acdf_environment_curves_find(env, square, range, strata);
+    if (!(p > 0.0)) return 0.0f;
+    acdf_grid_fractions(&grid, direction, position, range, t);
+    return acdf_grid_pdf(&grid, range, t, p);
+}
+#endif
+
+/* ---- any ---------------------------------------------------------------------------------------------- */
+
 /* Where a direction falls: its cell, the random numbers that lead there, and the fractions t[axis] across the cell
  * in the measures of the axes. Returns the cell's probability; 0 for directions that are NaN or whose length
  * differs from 1 by more than about 5e-4. */
@@ -170,51 +216,32 @@ ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float dir
     const AcdfGrid grid = acdf_environment_grid(env);
     double position[2], p;
     uint32_t square[2];
-    int axis;
     if (!acdf_grid_square(&grid, direction, square, position)) return 0.0;
-    if (env->halved) {
-        AcdfSpan steps[2];
-        p = acdf_environment_halved_cell(env, square, steps, range);
-        for (axis = 0; axis < 2; ++axis) {
-            strata[axis].low = (double)steps[axis].end[0] * 0x1p-31;
-            strata[axis].width = acdf_span_share(&steps[axis]);
-        }
-    } else {
-        acdf_sphere_ranges(env->columns, env->rows, range);
-        for (axis = 0; axis < 2; ++axis) {
-            strata[axis].low = 0.0;
-            strata[axis].width = 1.0;
-        }
-        p = acdf_tree_find(env->tree, env->root, square, range, strata);
-    }
+#ifndef ACDF_ENVIRONMENT_ONLY
+    if (!env->halved) p = acdf_environment_curves_find(env, square, range, strata);
+    else
+#endif
+        p = acdf_environment_halved_find(env, square, range, strata);
     acdf_grid_fractions(&grid, direction, position, range, t);
     return p;
 }
 
-/* acdf_environment_pdf by curves. */
-ACDF_OUTLINE float acdf_environment_curves_pdf(const AcdfEnvironment* env, const float direction[3]) {
-    const AcdfGrid grid = acdf_environment_grid(env);
-    AcdfRange range[2];
-    AcdfStratum strata[2];
-    double t[2];
-    const double p = acdf_environment_find(env, direction, range, t, strata);
-    return p > 0.0 ? acdf_grid_pdf(&grid, range, t, p) : 0.0f;
-}
-
-/* ---- any ---------------------------------------------------------------------------------------------- */
-
 /* Samples a direction. u0 (phi or u) and u1 (theta or v) in [0, 1]; values outside are clamped, NaN counts as 0.
  * Monotone in each of them within a cell: strata of random numbers stay strata of directions. */
 ACDF_INLINE AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, double u0, double u1) {
-    if (env->halved) return acdf_environment_halved_sample(env, u0, u1);
-    return acdf_environment_curves_sample(env, u0, u1);
+#ifndef ACDF_ENVIRONMENT_ONLY
+    if (!env->halved) return acdf_environment_curves_sample(env, u0, u1);
+#endif
+    return acdf_environment_halved_sample(env, u0, u1);
 }
 
 /* The pdf, in sr^-1, with which acdf_environment_sample returns `direction` (unit): exactly the sample's. 0 where
  * no sample falls, and for directions that are NaN or not of unit length. */
 ACDF_INLINE float acdf_environment_pdf(const AcdfEnvironment* env, const float direction[3]) {
-    if (env->halved) return acdf_environment_halved_pdf(env, direction);
-    return acdf_environment_curves_pdf(env, direction);
+#ifndef ACDF_ENVIRONMENT_ONLY
+    if (!env->halved) return acdf_environment_curves_pdf(env, direction);
+#endif
+    return acdf_environment_halved_pdf(env, direction);
 }
 
 /* The random numbers u[2] for which acdf_environment_sample returns `direction`. Returns 1, or 0 (and u unset)

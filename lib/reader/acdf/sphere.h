@@ -2,8 +2,9 @@
 #ifndef ACDF_SPHERE_H
 #define ACDF_SPHERE_H
 
-#include <acdf/pieces.h>
-#include <acdf/tree.h>
+#include <acdf/atan_float.h>
+#include <acdf/layout.h>
+#include <acdf/range.h>
 
 #ifdef __cplusplus
 extern "C" {

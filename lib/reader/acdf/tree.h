@@ -2,8 +2,8 @@
 #ifndef ACDF_TREE_H
 #define ACDF_TREE_H
 
-#include <acdf/elementary.h>
 #include <acdf/layout.h>
+#include <acdf/range.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -17,17 +17,6 @@ typedef struct AcdfCurve {
     const uint8_t* links;      /* distance to each child; 0: the segment ends */
     const uint8_t* tilts;
 } AcdfCurve;
-
-/* The part of one axis that a cell covers, and the slope of the density across it. */
-typedef struct AcdfRange {
-    uint32_t low, high; /* positions on the axis, low < high */
-    double tilt;        /* s: the density varies as 1 + s (2t - 1) for t in [0, 1] across the range */
-} AcdfRange;
-
-/* The random numbers of one axis that lead into a cell: u_low + u_width * [0, 1]. */
-typedef struct AcdfStratum {
-    double low, width;
-} AcdfStratum;
 
 ACDF_FN uint32_t acdf_curve_axis(const AcdfCurve* curve) { return curve->header & ACDF_CURVE_AXIS_MASK; }
 
@@ -222,20 +211,6 @@ ACDF_FN double acdf_tree_find_on(const uint8_t* tree, uint32_t at, const uint32_
 ACDF_FN double acdf_tree_find(const uint8_t* tree, uint32_t root, const uint32_t* square, AcdfRange* range,
                               AcdfStratum* strata) {
     return acdf_tree_find_on(tree, root, square, range, strata, 1.0);
-}
-
-/* Where in [0, 1] a tilted density puts u: solves t + s (t^2 - t) = u without cancellation. */
-ACDF_FN double acdf_tilt_sample(double tilt, double u) {
-    const double a = 1.0 - tilt;
-    return tilt == 0.0 ? u : 2.0 * u / (a + sqrt(a * a + 4.0 * tilt * u));
-}
-ACDF_FN double acdf_tilt_cdf(double tilt, double t) { return t + tilt * (t * t - t); }
-ACDF_FN double acdf_tilt_pdf(double tilt, double t) { return 1.0 + tilt * (2.0 * t - 1.0); }
-
-/* The random number in [0, 1] that a cell's stratum has at t of the cell: never more than 1 by rounding. */
-ACDF_FN double acdf_stratum_number(const AcdfStratum* stratum, const AcdfRange* range, double t) {
-    const double u = stratum->low + stratum->width * acdf_tilt_cdf(range->tilt, t);
-    return u < 1.0 ? u : 1.0;
 }
 
 #ifdef __cplusplus

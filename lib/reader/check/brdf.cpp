@@ -1,5 +1,5 @@
 // What a BRDF asks of axes and bins, and its chunk VIEW.
-#include "check/checker.h"
+#include "check/kinds.h"
 
 #include <cmath>
 #include <cstring>

@@ -1,30 +1,36 @@
 // The file as a container: header, chunk table, payloads.
 #include "check/chunk_table.h"
-#include "memory.h"
-
-#include <zlib.h>
+#include "check/rule_codes.h"
+#include "inflate.h"
+#ifndef ACDF_ENVIRONMENT_ONLY
+#include "check/kinds.h"
+#include "check/signatures.h"
+#endif
 
 #include <cstdarg>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 
 namespace acdf {
 
-void Report::add(int rule, std::uint64_t offset, const char* format, ...) noexcept {
+void Report::pass(const Finding& finding) noexcept {
     if (stopped_) return;
-    Finding finding;
+    ++(code_of(finding.number) == ErrorCode::none ? verdict_.warnings : verdict_.errors);
+    if (!sink_(finding, context_)) stopped_ = true;
+}
+
+#ifdef ACDF_ENVIRONMENT_ONLY
+void Report::add(int rule, std::uint64_t offset) noexcept { pass({rule, offset}); }
+#else
+void Report::add(int rule, std::uint64_t offset, const char* format, ...) noexcept {
     char detail[160];
     va_list arguments;
     va_start(arguments, format);
     std::vsnprintf(detail, sizeof detail, format, arguments);
     va_end(arguments);
-    finding.rule = find_rule(rule);
-    finding.offset = offset;
-    finding.detail = detail;
-    ++(finding.rule->severity == Severity::error ? verdict_.errors : verdict_.warnings);
-    if (!sink_(finding, context_)) stopped_ = true;
+    pass({rule, offset, find_rule(rule), detail});
 }
+#endif
 
 namespace {
 
@@ -35,60 +41,16 @@ using ull = unsigned long long; // for printf
 
 constexpr u8 magic[ACDF_MAGIC_SIZE] = ACDF_MAGIC_BYTES;
 
-u32 crc(u32 seed, const u8* bytes, u64 size) { return static_cast<u32>(crc32_z(seed, bytes, size)); }
-
 // ---- header ---------------------------------------------------------------------------------------------
-
-struct Signature {
-    const char* bytes;
-    std::size_t size;
-    const char* text;
-};
-
-// What people pass by mistake, and what transfers do to the magic.
-constexpr Signature signatures[] = {
-    {"\x76\x2f\x31\x01", 4, "this is an OpenEXR image; `acdf env` makes an .acdf file of it"},
-    {"#?RADIANCE", 10, "this is a Radiance HDR image; `acdf env` makes an .acdf file of it"},
-    {"#?RGBE", 6, "this is a Radiance HDR image; `acdf env` makes an .acdf file of it"},
-    {"\x89PNG", 4, "this is a PNG image, which holds no radiance"},
-    {"\x93NUMPY", 6, "this is a NumPy array; `acdf table` makes an .acdf file of it"},
-    {"II*\0", 4, "this is a TIFF image; `acdf env` makes an .acdf file of it"},
-    {"MM\0*", 4, "this is a TIFF image; `acdf env` makes an .acdf file of it"},
-    {"tensor_file", 11, "this is an RGL .bsdf file; `acdf brdf` makes an .acdf file of it"},
-    {"version https://git-lfs", 23, "this is a Git LFS pointer, not the file itself; fetch that (git lfs pull)"},
-    {"/annex/objects/", 15, "this is a git-annex pointer, not the file itself; fetch that (git annex get)"},
-    {"<!", 2, "this is a web page, as servers send in place of a file; download the file itself"},
-    {"<html", 5, "this is a web page, as servers send in place of a file; download the file itself"},
-    {"<HTML", 5, "this is a web page, as servers send in place of a file; download the file itself"},
-    {"<?xml", 5, "this is a web page, as servers send in place of a file; download the file itself"},
-    {"\x1f\x8b", 2, "this is a gzip file; inflate it first"},
-    {"\xab\x41\x43\x44\x46  \xbb\x0a\x1a\x0a", 11,
-     "a transfer in text mode turned CR LF into LF; transfer it as binary"},
-    {"\xab\x41\x43\x44\x46  \xbb\x0d\x0d\x0a", 11,
-     "a transfer in text mode turned LF into CR LF; transfer it as binary"},
-    {"\xab\x41\x43\x44\x46  \xbb\x0d\x0a\x1a\x0d\x0a", 13,
-     "Git turned LF into CR LF; mark it as binary (in .gitattributes: -text)"},
-    {"\x2b\x41\x43\x44\x46  \x3b", 8, "a transfer cut the highest bit of each byte; transfer it as binary"},
-    {"\xab\x41\x43\x44\x46", 5, "it starts like an .acdf file, but its magic is damaged"},
-};
-
-const char* what_is_it(const u8* bytes, u64 size) {
-    for (const Signature& s : signatures)
-        if (size >= s.size && std::memcmp(bytes, s.bytes, s.size) == 0) return s.text;
-    u32 dims[3];
-    constexpr u64 merl_size = 12 + u64{3} * 8 * 90 * 90 * 180;
-    if (size == merl_size) {
-        std::memcpy(dims, bytes, sizeof dims);
-        if (dims[0] == 90 && dims[1] == 90 && dims[2] == 180)
-            return "this is a MERL BRDF; `acdf brdf` makes an .acdf file of it";
-    }
-    return "this is not an .acdf file";
-}
 
 // False where the rest cannot be read with any meaning.
 bool check_start(const u8* bytes, u64 size, Report& report) {
     if (size != 0 && std::memcmp(bytes, magic, size < sizeof magic ? size : sizeof magic) != 0) {
+#ifdef ACDF_ENVIRONMENT_ONLY
+        report.add(2002, 0);
+#else
         report.add(2002, 0, "%s", what_is_it(bytes, size));
+#endif
         return false;
     }
     if (size < sizeof(AcdfHeader)) {
@@ -123,8 +85,8 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
     const bool count_ok = header.chunk_count >= 1 && header.chunk_count <= ACDF_MAX_CHUNKS;
     const bool table_ok = count_ok && table_end <= size;
     if (table_ok) {
-        const u32 expected = crc(crc(0, bytes, offsetof(AcdfHeader, header_crc)), bytes + sizeof(AcdfHeader),
-                                 table_end - sizeof(AcdfHeader));
+        const u32 expected = crc32_of(crc32_of(0, bytes, offsetof(AcdfHeader, header_crc)),
+                                      bytes + sizeof(AcdfHeader), table_end - sizeof(AcdfHeader));
         if (expected != header.header_crc)
             report.add(2004, offsetof(AcdfHeader, header_crc),
                        "%08x is stored, %08x is right: header or chunk table are damaged", header.header_crc,
@@ -133,6 +95,9 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
     check_file_length(header, size, report);
     if (header.kind < ACDF_KIND_ENVIRONMENT || header.kind > ACDF_KIND_TABLE)
         report.add(2006, offsetof(AcdfHeader, kind), "kind %u is unknown", header.kind);
+#ifdef ACDF_ENVIRONMENT_ONLY
+    else if (header.kind != ACDF_KIND_ENVIRONMENT) report.add(2006, offsetof(AcdfHeader, kind));
+#endif
     for (u32 bit = 0; bit < 32; ++bit)
         if (header.required_features >> bit & 1)
             report.add(2007, offsetof(AcdfHeader, required_features),
@@ -189,7 +154,12 @@ void check_type_and_flags(const ChunkTable& table, u32 i, u32 kind, Report& repo
             report.add(3003, at, "chunks %u and %u are both '%s'", j, i, name.text);
             break;
         }
-    if (chunk.codec > (chunk.type == ACDF_CHUNK_TREE ? ACDF_CODEC_PLANES : ACDF_CODEC_ZLIB))
+#ifdef ACDF_ENVIRONMENT_ONLY
+    const u32 last_codec = ACDF_CODEC_ZLIB;
+#else
+    const u32 last_codec = chunk.type == ACDF_CHUNK_TREE ? ACDF_CODEC_PLANES : ACDF_CODEC_ZLIB;
+#endif
+    if (chunk.codec > last_codec)
         report.add(3005, at + offsetof(AcdfChunk, codec), "codec %u of '%s' is unknown", chunk.codec, name.text);
     if ((chunk.flags & ~ACDF_CHUNK_FLAG_CRITICAL) != 0)
         report.add(3009, at + offsetof(AcdfChunk, flags), "flags %08x of '%s'", chunk.flags, name.text);
@@ -285,11 +255,24 @@ void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
     for (u32 i = 0; i < table.count && !report.stopped(); ++i) {
         const AcdfChunk& chunk = table.chunks[i];
         if (!table.inside[i]) continue;
-        const u32 right = crc(0, bytes + chunk.offset, chunk.stored_length);
+        const u32 right = crc32_of(0, bytes + chunk.offset, chunk.stored_length);
         if (right != chunk.crc)
             report.add(4001, chunk.offset, "'%s' is damaged: %08x is stored, %08x is right",
                        ChunkName(chunk.type).text, chunk.crc, right);
     }
+}
+
+// An environment by halvings.
+void check_halved_environment(const Payloads& payloads, const AcdfAllocator& allocator, Report& report,
+                              Parts& parts) {
+    const Payload& halvings = payloads.of[chunk_halvings];
+    if (payloads.of[chunk_bins].data || payloads.of[chunk_tree].data)
+        report.add(6035, halvings.at(0), "%s is there, too", payloads.of[chunk_tree].data ? "TREE" : "BINS");
+    if (parts.description->fit != ACDF_FIT_VARIANCE)
+        report.add(6035, halvings.at(0), "with fit %u", parts.description->fit);
+    if (!report.stopped()) check_halvings(halvings, report, allocator, parts);
+    if (!report.stopped())
+        check_environment(payloads.of[chunk_description], payloads.of[chunk_bins], report, parts);
 }
 
 } // namespace
@@ -315,64 +298,16 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
     if (payloads.of[chunk_metadata].data && !report.stopped())
         check_metadata(payloads.of[chunk_metadata], report, parts);
     if (!parts.description || report.stopped()) return report.verdict();
-    TileBoxes boxes;
-    const bool fast =
-        header.kind == ACDF_KIND_LOCAL && (payloads.of[chunk_sums].data || payloads.of[chunk_grid].data);
-    if (belongs(chunk_tiles, header.kind)) // else rule 3013
-        check_tiles(payloads.of[chunk_tiles], payloads.of[chunk_rows], fast, report, parts, boxes);
-    if (fast && !report.stopped()) check_fast(payloads, boxes, report, parts);
-    const bool tiles_ok = parts.tiles || !boxes.given; // else bins could mean anything
-    if (payloads.of[chunk_halvings].data && belongs(chunk_halvings, header.kind)) {
-        if (payloads.of[chunk_bins].data || payloads.of[chunk_tree].data)
-            report.add(6035, payloads.of[chunk_halvings].at(0), "%s is there, too",
-                       payloads.of[chunk_tree].data ? "TREE" : "BINS");
-        if (parts.description->fit != ACDF_FIT_VARIANCE)
-            report.add(6035, payloads.of[chunk_halvings].at(0), "with fit %u", parts.description->fit);
-        if (!report.stopped()) check_halvings(payloads.of[chunk_halvings], report, allocator, parts);
-    } else if (tiles_ok && !report.stopped())
-        check_tree(payloads.of[chunk_bins], payloads.of[chunk_tree], header.kind, boxes, report, parts);
-    if (header.kind == ACDF_KIND_LOCAL && !report.stopped())
-        check_local_kind(description, payloads.of[chunk_local], boxes, report, parts);
-    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_visibility].data && !fast && !report.stopped())
-        check_visibility(payloads.of[chunk_visibility], report, parts);
-    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_portals].data && !fast && !report.stopped())
-        check_portals(payloads.of[chunk_portals], report, parts);
-    if (header.kind == ACDF_KIND_BRDF && !report.stopped())
-        check_brdf_kind(description, payloads.of[chunk_views], report, parts);
-    if (header.kind == ACDF_KIND_ENVIRONMENT && !report.stopped())
-        check_environment(description, payloads.of[chunk_bins], report, parts);
-    if (header.kind == ACDF_KIND_TABLE && !report.stopped())
-        check_table_kind(description, payloads.of[chunk_bins], report, parts);
+    if (payloads.of[chunk_halvings].data && belongs(chunk_halvings, header.kind))
+        check_halved_environment(payloads, allocator, report, parts);
+#ifdef ACDF_ENVIRONMENT_ONLY
+    else report.add(5002, description.at(offsetof(AcdfDescription, fit)));
+#else
+    else check_kind(payloads, header.kind, report, parts);
+#endif
     if (payloads.of[chunk_partner].data && belongs(chunk_partner, header.kind) && !report.stopped())
         check_partner(payloads.of[chunk_partner], header.kind, report, parts);
     return report.verdict();
-}
-
-Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* context,
-                 const Limits& limits) noexcept {
-    const u8* data = static_cast<const u8*>(bytes);
-    void* copy = nullptr;
-    Parts parts;
-    Verdict verdict;
-    if (size > limits.max_file_bytes) {
-        Report report(sink, context);
-        report.add(1004, 0, "%llu bytes, the limit is %llu", static_cast<ull>(size),
-                   static_cast<ull>(limits.max_file_bytes));
-        return report.verdict();
-    }
-    if (reinterpret_cast<std::uintptr_t>(data) % alignof(AcdfHeader) != 0) {
-        copy = std::malloc(size ? size : 1);
-        if (!copy) {
-            Report report(sink, context);
-            report.add(1003, 0, "%llu bytes for a copy", static_cast<ull>(size));
-            return report.verdict();
-        }
-        data = static_cast<const u8*>(std::memcpy(copy, bytes, size));
-    }
-    verdict = check(data, size, limits, sink, context, parts);
-    give_block({}, parts.inflated);
-    std::free(copy);
-    return verdict;
 }
 
 } // namespace acdf

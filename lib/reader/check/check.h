@@ -1,18 +1,37 @@
 // Every check of a file, once: `File` stops at the first error, `acdf validate` reports all.
 #pragma once
 
+#ifndef ACDF_ENVIRONMENT_ONLY
 #include "check/rules.h"
+#endif
+
+#include <acdf/halvings.h>
+#include <acdf/reader.h>
+#ifndef ACDF_ENVIRONMENT_ONLY
+#include <acdf/fast.h>
+#include <acdf/portals.h>
+#endif
 
 #include <cstring>
 #include <type_traits>
+
+// Functions that run once a file: what they take in the profile of environments is room, not time.
+#if defined(ACDF_ENVIRONMENT_ONLY) && defined(__GNUC__)
+#define ACDF_ONCE __attribute__((cold))
+#else
+#define ACDF_ONCE
+#endif
 
 namespace acdf {
 
 /// A broken rule.
 struct Finding {
-    const Rule* rule = nullptr;
+    int number = 0;           ///< of the rule
     std::uint64_t offset = 0; ///< byte in the file; for a compressed chunk that of its first stored byte
-    const char* detail = "";  ///< what was found and, if it helps, what to do; valid during the call
+#ifndef ACDF_ENVIRONMENT_ONLY
+    const Rule* rule = nullptr;
+    const char* detail = ""; ///< what was found and, if it helps, what to do; valid during the call
+#endif
 };
 
 /// Called for each finding; returns false to stop.
@@ -23,6 +42,7 @@ struct Verdict {
     bool valid() const noexcept { return errors == 0; }
 };
 
+#ifndef ACDF_ENVIRONMENT_ONLY
 /// Reports every finding that the checks can go on to, in the order of the rules' ranges. Any bytes, at any
 /// alignment; reads nothing outside them; linear in the size and in what the compressed chunks inflate to.
 Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* context,
@@ -41,6 +61,7 @@ Verdict validate(const void* bytes, std::size_t size, Sink&& sink, const Limits&
         },
         const_cast<void*>(static_cast<const void*>(&sink)), limits);
 }
+#endif
 
 /// A length in META, at any alignment.
 inline std::uint32_t load_u32(const std::uint8_t* bytes) noexcept {
@@ -60,7 +81,17 @@ struct Parts {
     const AcdfAxis* axes = nullptr; ///< description->axis_count
     const AcdfBin* bins = nullptr;  ///< description->bin_count
     const std::uint8_t* tree = nullptr;
-    std::uint32_t tree_units = 0;                 ///< bins and tree: of curves alone
+    std::uint32_t tree_units = 0;           ///< bins and tree: of curves alone
+    const AcdfPartner* partner = nullptr;   ///< null where the file is to be used alone
+    const std::uint8_t* metadata = nullptr; ///< the payload of META after its count; null where absent
+    std::uint32_t metadata_count = 0;
+    AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV
+    AcdfBlock halvings_block = {};   ///< that holds them, of `allocator`
+    AcdfAllocator allocator = {};
+    std::uint32_t halving_count = 0;
+    AcdfBlock inflated = {}; ///< of the inflated chunks, from take_block; the caller gives it back
+
+#ifndef ACDF_ENVIRONMENT_ONLY
     const AcdfViews* views = nullptr;             ///< of a BRDF
     const float* nodes = nullptr;                 ///< views->theta_count
     const AcdfTiles* tiles = nullptr;             ///< null where bins share nothing
@@ -70,21 +101,14 @@ struct Parts {
     AcdfFast fast = {};                           ///< of the fast shape, which has no rows; else null
     const AcdfLocalHeader* local = nullptr;       ///< of local environments
     const AcdfBrightTile* bright_tiles = nullptr; ///< local->bright_tile_count
-    const AcdfPartner* partner = nullptr;         ///< null where the file is to be used alone
     AcdfVisibilityTable visibility = {};          ///< of local environments; its header is null where absent
     AcdfPortalTable portals = {};                 ///< beside visibility cells; its header is null where absent
-    const std::uint8_t* metadata = nullptr;       ///< the payload of META after its count; null where absent
-    std::uint32_t metadata_count = 0;
-    AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV
-    AcdfBlock halvings_block = {};   ///< that holds them, of `allocator`
-    AcdfAllocator allocator = {};
-    std::uint32_t halving_count = 0;
-    class TreeSurvey* survey = nullptr; ///< given by the caller: made where it costs nothing
-    AcdfBlock inflated = {};            ///< of the inflated chunks, from take_block; the caller gives it back
+    class TreeSurvey* survey = nullptr;           ///< given by the caller: made where it costs nothing
+#endif
 };
 
 /// The checks themselves, on bytes aligned to 8. `parts` is complete where the verdict has no errors.
-Verdict check(const std::uint8_t* bytes, std::uint64_t size, const Limits& limits, FindingSink sink, void* context,
-              Parts& parts, const AcdfAllocator& allocator = {}) noexcept;
+ACDF_ONCE Verdict check(const std::uint8_t* bytes, std::uint64_t size, const Limits& limits, FindingSink sink,
+                        void* context, Parts& parts, const AcdfAllocator& allocator = {}) noexcept;
 
 } // namespace acdf

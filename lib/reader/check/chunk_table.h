@@ -35,7 +35,7 @@ struct ChunkName {
 };
 
 /// Finds the payloads of all known chunks, and inflates those that are compressed within `limits`.
-void read_payloads(const ChunkTable& table, const std::uint8_t* bytes, const Limits& limits,
-                   const AcdfAllocator& allocator, Report& report, Parts& parts, Payloads& payloads);
+ACDF_ONCE void read_payloads(const ChunkTable& table, const std::uint8_t* bytes, const Limits& limits,
+                             const AcdfAllocator& allocator, Report& report, Parts& parts, Payloads& payloads);
 
 } // namespace acdf

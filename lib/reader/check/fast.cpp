@@ -1,5 +1,5 @@
 // The fast shape of local environments: SUMS and GRID. Linear in their bytes.
-#include "check/checker.h"
+#include "check/kinds.h"
 
 #include <acdf/fast.h>
 

@@ -1,5 +1,5 @@
 // What a local environment asks of axes and bins, and its chunk LOCL.
-#include "check/checker.h"
+#include "check/kinds.h"
 
 #include <cmath>
 #include <cstring>

@@ -1,5 +1,5 @@
 // Rectangles that light comes through: PORT. Linear in its bytes.
-#include "check/checker.h"
+#include "check/kinds.h"
 
 #include <cmath>
 

@@ -1,8 +1,6 @@
 // The rules of format/SPEC.md §8: one table, used by the checks, by `acdf validate` and by the tests.
 #pragma once
 
-#include <acdf/reader.h>
-
 #include <cstddef>
 
 namespace acdf {
@@ -13,7 +11,6 @@ struct Rule {
     int number;           ///< 10xx I/O, 20xx header, 30xx chunk table, 40xx payload, 50xx DESC and META,
                           ///< 60xx curves and bins, 70xx environment, 80xx BRDF (reserved); never reused
     Severity severity;    ///< a file with a warning is read
-    ErrorCode code;       ///< what `File` returns where the rule is broken
     const char* id;       ///< short stable name, for people and for the names of test files
     const char* sentence; ///< what must hold, word for word as in SPEC.md
 };

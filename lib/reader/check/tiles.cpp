@@ -1,5 +1,5 @@
 // What bins share: TILE and ROWS. Linear in their bytes.
-#include "check/checker.h"
+#include "check/kinds.h"
 
 #include <cstdlib>
 

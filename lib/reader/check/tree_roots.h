@@ -1,7 +1,7 @@
 // A tree that is being checked, and where it begins. Not installed.
 #pragma once
 
-#include "check/checker.h"
+#include "check/kinds.h"
 
 #include <acdf/sample.h>
 

@@ -1,5 +1,5 @@
 // What of the light reaches a place: PLAC. Linear in its bytes.
-#include "check/checker.h"
+#include "check/kinds.h"
 
 #include <cmath>
 

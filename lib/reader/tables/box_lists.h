@@ -1,7 +1,5 @@
-// Lists of boxes that are halved again and again (squares.h), some boxes at a time where the processor can.
+// Lists of boxes that are halved again and again (squares.h).
 #pragma once
-
-#include <acdf/wavefront.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -28,20 +26,12 @@ struct HalvedCounts {
     std::size_t lower, upper;
 };
 
-/// What is done with lists, in one order and with one result by any instructions.
-struct BoxLists {
-    /// Leaves those that begin below the middle in the list, and writes those that reach it to `upper`, which
-    /// begins kBehindList elements behind the list or later.
-    HalvedCounts (*halve)(ListedBox* list, std::size_t count, const Halving& across, ListedBox* upper) noexcept;
-    /// How many of every `step`th box the middle of each axis cuts.
-    void (*count_cuts)(const ListedBox* list, std::size_t count, std::size_t step, const Halving across[2],
-                       std::size_t cut[2]) noexcept;
-};
+/// Leaves those that begin below the middle in the list, and writes those that reach it to `upper`, which begins
+/// kBehindList elements behind the list or later.
+HalvedCounts halve_boxes(ListedBox* list, std::size_t count, const Halving& across, ListedBox* upper) noexcept;
 
-/// By the best instructions that the processor has, up to `most`.
-const BoxLists& box_lists(Instructions most) noexcept;
-#if ACDF_WAVEFRONT_X86
-extern const BoxLists box_lists_avx2, box_lists_avx512;
-#endif
+/// How many of every `step`th box the middle of each axis cuts.
+void count_cut_boxes(const ListedBox* list, std::size_t count, std::size_t step, const Halving across[2],
+                     std::size_t cut[2]) noexcept;
 
 } // namespace acdf

@@ -6,8 +6,7 @@
 #include "tables/tile_blocks.h"
 #include "tables/tiles.h"
 
-#include <acdf/cut.h>
-#include <acdf/fast_cut.h>
+#include <acdf/box_middle.h>
 
 #include <algorithm>
 #include <cmath>
@@ -257,7 +256,7 @@ void place_middles(const AcdfLocal& local, const AcdfLocalTables& tables, float*
     for (u32 tile = 0; tile < local.blend.tiles->tile_count; ++tile, out += 4) {
         const AcdfTileRecord& record = *acdf_local_tile(&tables, tile);
         const u32 box[2][2] = {{record.high[0], record.low[0]}, {record.high[1], record.low[1]}};
-        acdf_cut_middle(&local, box, out);
+        acdf_box_middle(&local, box, out);
         if (!local.fast.grid) continue; // products divide the small shape by the solid angles of its splits
         AcdfRange range[2];
         acdf_tile_range(&record, range);
@@ -268,7 +267,7 @@ void place_middles(const AcdfLocal& local, const AcdfLocalTables& tables, float*
 
 // Of the fast shape, for cuts: which tile of each group gets most of a row, and how large groups are.
 std::size_t group_heart_words(const AcdfLocal& local) {
-    if (!local.fast.grid || local.fast.ends > ACDF_FAST_CUT_GROUPS) return 0;
+    if (!local.fast.grid || local.fast.ends > ACDF_MOST_GROUP_HEARTS) return 0;
     return whole_lines(std::size_t{local.blend.tiles->row_count} * local.fast.ends / 4);
 }
 

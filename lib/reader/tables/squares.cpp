@@ -198,7 +198,7 @@ void SquaresMaker::divide(const Grid& grid, const Rectangle& rectangle, const Fr
     const std::size_t above = first + count + kBehindList;
     if (!list_.reserve(above + count + kRoomBehind)) return;
     const HalvedCounts counts =
-        lists_.halve(list_.data() + first, count, halving(rectangle, frame, axis), list_.data() + above);
+        halve_boxes(list_.data() + first, count, halving(rectangle, frame, axis), list_.data() + above);
     Rectangle half = rectangle;
     half.origin[axis] += 1u << --half.log2[axis];
     list_.cut(above + counts.upper);
@@ -217,7 +217,7 @@ int SquaresMaker::best_axis(const Grid& grid, const Rectangle& rectangle, const 
     const Halving across[2] = {halving(rectangle, frame, 0), halving(rectangle, frame, 1)};
     const std::size_t count = list_.size() - first;
     std::size_t cut[2];
-    lists_.count_cuts(list_.data() + first, count, 1 + count / kLookedAt, across, cut);
+    count_cut_boxes(list_.data() + first, count, 1 + count / kLookedAt, across, cut);
     if (cut[0] != cut[1]) return cut[0] < cut[1] ? 0 : 1;
     return rectangle.log2[0] >= rectangle.log2[1] ? 0 : 1;
 }

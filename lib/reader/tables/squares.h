@@ -45,10 +45,8 @@ private:
 /// The arrays of an AcdfSquares.
 class SquaresMaker {
 public:
-    /// The same grids by any instructions, of which `most` are the best that are used.
-    explicit SquaresMaker(Scratch* scratch = nullptr, Instructions most = Instructions::avx512) noexcept
-        : lists_(box_lists(most)), entries_(scratch), finer_(scratch), block_boxes_(scratch), block_cells_(scratch),
-          list_(scratch) {}
+    explicit SquaresMaker(Scratch* scratch = nullptr) noexcept
+        : entries_(scratch), finer_(scratch), block_boxes_(scratch), block_cells_(scratch), list_(scratch) {}
 
     /// Over boxes (at most 65536) of keys of `key_bits` bits. Boxes without keys of an axis are in no block. The
     /// work is in proportion to how many there are, whatever the boxes: where it would be more, entries name the
@@ -92,7 +90,6 @@ private:
     void fill(const Grid& grid, const Rectangle& rectangle, std::uint32_t entry);
     int best_axis(const Grid& grid, const Rectangle& rectangle, const Frame& frame, std::size_t first) const;
 
-    const BoxLists& lists_;
     const KeySpan* spans_[2] = {nullptr, nullptr}; ///< of each axis
     Grid grid_ = {};
     std::size_t work_ = 0, most_words_ = 0; ///< work that is left

@@ -5,11 +5,13 @@
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
 #include "tests/inputs/directions.h"
+#include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
 
 #include <acdf/builder.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 
@@ -31,7 +33,8 @@ const builder::Target& sky(bool square) {
             return (z < 0.0 ? 0.3 : acdf_test::smooth_sky(phi, z)) * noise(rng);
         };
         compress::Target grid = acdf_test::texel_target(192, 96, light);
-        return builder::target_of(octahedral ? acdf_test::octahedral(grid) : std::move(grid), {});
+        return builder::target_of(octahedral ? acdf_test::octahedral(grid) : std::move(grid),
+                                  acdf::test::nearest_lookup());
     };
     static const builder::Target latlong = make(false), folded = make(true);
     return square ? folded : latlong;

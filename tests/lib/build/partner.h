@@ -1,6 +1,7 @@
 // Files that are made for an MIS partner, of small probes, and slow references that share no code with the library.
 #pragma once
 
+#include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/synthetic.h"
 
 #include <acdf/builder.h>
@@ -150,6 +151,7 @@ void make_by(const Build& build, const Probe& probe, const Kind& kind, std::uint
     pixels.height = kRows;
     pixels.channels = 1;
     Options options;
+    options.target = acdf::test::nearest_lookup();
     options.goal = builder::Goal::of_budget(budget);
     options.mis = kind.mis;
     Result made;

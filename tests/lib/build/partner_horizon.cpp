@@ -2,11 +2,13 @@
 #include "build/accuracy/local.h"
 #include "build/own_terms.h"
 #include "compress/local/normals.h"
+#include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
 
 #include <acdf/builder.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 
@@ -35,7 +37,7 @@ std::vector<build::Normal> normals() {
 /// The largest relative variance of a pair at any normal.
 double worst(const compress::Target& grid, AcdfPartnerKind kind, AcdfHeuristic heuristic, std::uint64_t bytes,
              build::Normal& at) {
-    const builder::Target target = builder::target_of(grid, {});
+    const builder::Target target = builder::target_of(grid, acdf::test::nearest_lookup());
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(bytes);
     options.mis.kind = kind;

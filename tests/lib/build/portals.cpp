@@ -1,6 +1,7 @@
 // Files with visibility cells with portals: a room with a window, in the light of a smooth sky. Sums over the
 // window judge them.
 #include "tests/inputs/directions.h"
+#include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/sanitized.h"
 
 #include <acdf/builder.h>
@@ -42,7 +43,7 @@ const builder::Target& sky() {
         pixels.width = columns;
         pixels.height = rows;
         builder::Target out;
-        EXPECT_TRUE(builder::Target::from(pixels, {}, out).ok());
+        EXPECT_TRUE(builder::Target::from(pixels, acdf::test::nearest_lookup(), out).ok());
         return out;
     }();
     return made;

@@ -1,6 +1,7 @@
 // Files with visibility cells: a floor with a wall on it, in the light of a sky with a sun. Exact sums are the
 // judge.
 #include "tests/inputs/directions.h"
+#include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/sanitized.h"
 
 #include <acdf/builder.h>
@@ -50,7 +51,7 @@ const builder::Target& target() {
         pixels.width = kColumns;
         pixels.height = kRows;
         builder::Target out;
-        EXPECT_TRUE(builder::Target::from(pixels, {}, out).ok());
+        EXPECT_TRUE(builder::Target::from(pixels, acdf::test::nearest_lookup(), out).ok());
         return out;
     }();
     return made;

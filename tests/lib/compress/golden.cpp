@@ -3,6 +3,7 @@
 #include "tests/inputs/paths.h"
 #include "tests/lib/reader/golden_numbers.h"
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

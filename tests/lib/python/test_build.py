@@ -243,7 +243,8 @@ class Documentation(unittest.TestCase):
             path = os.path.join(TESTS, "golden", "v1.0", name + ".acdf")
             theirs = json.loads(acdf_program("info", "--json", path))
             ours = acdf.open(path).info()
-            for key in ("kind", "version", "bytes", "table_bytes", "bins", "axes", "fit", "filter", "parameterization", "total", "chunks"):
+            keys = ("kind", "version", "bytes", "table_bytes", "memory_bytes", "bins", "axes", "fit", "filter", "parameterization")
+            for key in (*keys, "total", "chunks"):
                 self.assertEqual(ours[key], theirs[key], (name, key))
             self.assertEqual("partner" in ours, "partner" in theirs)
             self.assertEqual(ours.get("accuracy", {}), theirs["accuracy"])

@@ -1,4 +1,4 @@
-// BRDF files of every form that runtime tables and wavefronts meet.
+// BRDF files of every form that runtime tables and batches meet.
 #pragma once
 
 #include "tests/lib/reader/brdf_builder.h"

@@ -3,6 +3,7 @@
 
 #include <acdf/acdf.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cstring>
 #include <memory>

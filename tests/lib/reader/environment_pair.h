@@ -6,6 +6,7 @@
 #include "tests/lib/reader/random.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

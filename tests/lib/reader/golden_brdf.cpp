@@ -2,6 +2,7 @@
 #include "tests/lib/reader/golden_numbers.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include "tests/lib/reader/random_halvings.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include <acdf/brdf.h>
 #include <acdf/local.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The symbols of acdf/linked.h give what the inline functions give, and nothing for files of other kinds.
 #include <acdf/acdf.h>
 #include <acdf/reader.h>
-#include <acdf/wavefront.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 
@@ -84,7 +84,7 @@ TEST(Linked, environments) {
     }
 }
 
-// Several samples a normal, and one: then they are sampled in waves.
+// Several samples a normal, and one.
 void expect_local_arrays(std::size_t each) {
     Both both(golden("local"));
     const acdf::LocalEnvironmentView sky = both.file.local();
@@ -114,24 +114,17 @@ void expect_local_arrays(std::size_t each) {
 TEST(Linked, localEnvironmentsServeSeveralSamplesANormal) { expect_local_arrays(kEach); }
 TEST(Linked, localEnvironmentsServeANormalASample) { expect_local_arrays(1); }
 
-TEST(Linked, brdfsAloneAndInWaves) {
+TEST(Linked, brdfs) {
     for (const char* name : {"brdf", "brdf_anisotropic"}) {
         Both both(golden(name));
         const acdf::BrdfView brdf = both.file.brdf();
         const AcdfFile* file = both.handle.get();
-        AcdfError error;
-        const std::unique_ptr<AcdfBrdfWaves, decltype(&acdf_brdf_waves_close)> waves(acdf_brdf_waves(file, &error),
-                                                                                     acdf_brdf_waves_close);
-        ASSERT_TRUE(waves) << error.message;
         for (std::size_t each : {std::size_t{1}, kEach, kCount}) {
             const std::vector<float> views = Both::directions(kCount, 0.0);
-            std::vector<float> wave_w(3 * kCount), wave_p(kCount), densities(kCount), wave_densities(kCount);
+            std::vector<float> densities(kCount);
             std::vector<double> u(2 * kCount), albedos(kCount);
             acdf_sample_brdf_array(file, views.data(), each, both.u.data(), kCount, both.w.data(), both.p.data());
-            acdf_brdf_waves_draw(waves.get(), views.data(), each, both.u.data(), kCount, wave_w.data(),
-                                 wave_p.data());
             acdf_pdf_brdf_array(file, views.data(), each, both.w.data(), kCount, densities.data());
-            acdf_brdf_waves_density(waves.get(), views.data(), each, both.w.data(), kCount, wave_densities.data());
             acdf_invert_brdf_array(file, views.data(), each, both.w.data(), kCount, u.data());
             acdf_albedo_brdf_array(file, views.data(), kCount, albedos.data());
             for (std::size_t i = 0; i < kCount; ++i) {
@@ -146,9 +139,6 @@ TEST(Linked, brdfsAloneAndInWaves) {
                 }
                 EXPECT_EQ(albedos[i], brdf.albedo(&views[3 * i]));
             }
-            EXPECT_EQ(std::memcmp(wave_w.data(), both.w.data(), 12 * kCount), 0);
-            EXPECT_EQ(std::memcmp(wave_p.data(), both.p.data(), 4 * kCount), 0);
-            EXPECT_EQ(std::memcmp(wave_densities.data(), densities.data(), 4 * kCount), 0);
         }
     }
 }
@@ -218,10 +208,6 @@ TEST(Linked, otherKindsAreRefused) {
     EXPECT_EQ(acdf_sample_table(e, nullptr, u, x), 0.0);
     EXPECT_EQ(acdf_pdf_table(e, nullptr, u), 0.0);
     EXPECT_EQ(acdf_table_sampled_axes(e), 0u);
-    AcdfError error;
-    EXPECT_EQ(acdf_brdf_waves(e, &error), nullptr);
-    EXPECT_EQ(error.code, ACDF_UNSUPPORTED);
-    acdf_brdf_waves_close(nullptr);
 }
 
 TEST(Linked, noItemsAPlaceAreRefused) {
@@ -241,17 +227,9 @@ TEST(Linked, noItemsAPlaceAreRefused) {
     EXPECT_EQ(acdf_sample_table_array(t, index, 0, u.data(), 4, x.data(), x.data() + 20), 0);
     EXPECT_EQ(acdf_pdf_table_array(t, index, 0, u.data(), 4, x.data()), 0);
     EXPECT_EQ(acdf_invert_table_array(t, index, 0, u.data(), 4, x.data()), 0);
-    AcdfBrdfWaves* const waves = acdf_brdf_waves(b, nullptr);
-    ASSERT_TRUE(waves);
-    EXPECT_EQ(acdf_brdf_waves_draw(waves, up.data(), 0, u.data(), 4, w.data(), p.data()), 0);
-    EXPECT_EQ(acdf_brdf_waves_density(waves, up.data(), 0, w.data(), 4, p.data()), 0);
     EXPECT_EQ(w, as_it_was);
     EXPECT_EQ(p, std::vector<float>(4, -7.0f));
     EXPECT_EQ(x, std::vector<double>(24, -7.0));
-    EXPECT_EQ(acdf_brdf_waves_draw(waves, up.data(), 4, u.data(), 4, w.data(), p.data()), 1);
-    EXPECT_EQ(acdf_brdf_waves_density(waves, up.data(), 4, w.data(), 4, p.data()), 1);
-    EXPECT_GT(p[3], 0.0f);
-    acdf_brdf_waves_close(waves);
 }
 
 TEST(Linked, anIndexThatIsMissingIsRefused) {

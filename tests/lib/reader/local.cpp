@@ -7,6 +7,7 @@
 
 #include <acdf/acdf.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

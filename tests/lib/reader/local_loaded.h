@@ -4,6 +4,7 @@
 #include "tests/lib/reader/local_builder.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,8 @@
 #include "tests/lib/reader/load.h"
 #include "tests/lib/reader/random_halvings.h"
 
+#include <acdf/environment_view.h>
+
 #include <gtest/gtest.h>
 
 #include <memory>

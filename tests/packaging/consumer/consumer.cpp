@@ -1,5 +1,6 @@
 // Samples from an environment file through acdf/reader.h; consumer.c prints the same through the C interface.
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <cmath>
 #include <cstdio>

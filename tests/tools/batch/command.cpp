@@ -72,7 +72,7 @@ TEST_F(BatchCommand, OptionsAreComparedAsMeantNotAsSpelled) {
     write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
     EXPECT_EQ(report({probes, "--set", "env.budget=2KiB"})["done"], 1);
     EXPECT_EQ(report({probes, "--set", "env.budget=2048"})["up_to_date"], 1);
-    for (const char* other : {"env.filter=bilinear", "env.channel=rgb", "env.compress=zlib",
+    for (const char* other : {"env.filter=nearest", "env.channel=rgb", "env.compress=zlib",
                               "env.projection=latlong", "env.max-weight=50", "env.bad-pixels=clamp"}) {
         const std::vector<std::string> run = {probes, "--set", "env.budget=2048", "--set", other};
         EXPECT_EQ(report(run)["done"], 1) << other;

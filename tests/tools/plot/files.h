@@ -9,6 +9,7 @@
 #include "images/image_file.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

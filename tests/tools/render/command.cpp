@@ -187,6 +187,24 @@ TEST_F(RenderCommand, SaysWhatIsWrong) {
     refused({}, 1, "probe.pfm");
 }
 
+// As most renderers have it; samplers and the exact sum see the same light.
+TEST_F(RenderCommand, LightIsInterpolatedUnlessTheSceneSaysOtherwise) {
+    const auto brightness = [&](const std::string& filter, const std::string& output) {
+        std::string scene = small_scene("\"cosine\", \"full-cdf\", \"env:4KiB\", \"local:32KiB\"");
+        const std::string was = ", \"filter\": \"nearest\"";
+        scene.replace(scene.find(was), was.size(), filter);
+        write_text(folder / "scene.json", scene);
+        const Result result = render_once(output, {"--no-timing", "--json"});
+        EXPECT_EQ(result.code, 0) << result.err;
+        for (const Json& one : Json::parse(result.out)["samplers"])
+            EXPECT_LT(std::abs(one["bias_standard_errors"].get<double>()), 4.5) << filter << one;
+        return read_text(folder / (output + "/reference.exr"));
+    };
+    const std::string by_default = brightness("", "a");
+    EXPECT_EQ(brightness(", \"filter\": \"bilinear\"", "b"), by_default);
+    EXPECT_NE(brightness(", \"filter\": \"nearest\"", "c"), by_default);
+}
+
 TEST_F(RenderCommand, TakesFiles) {
     ASSERT_EQ(run_acdf({"env", folder / "probe.pfm", "-o", folder / "sky.acdf", "--cells", "64", "-q"}).code, 0);
     const Result result =
@@ -194,7 +212,11 @@ TEST_F(RenderCommand, TakesFiles) {
     ASSERT_EQ(result.code, 0) << result.err;
     const Json json = Json::parse(result.out);
     EXPECT_TRUE(json["samplers"][1]["ours"]);
-    EXPECT_EQ(json["samplers"][1]["bytes"], std::filesystem::file_size(folder / "sky.acdf"));
+    const Json info = Json::parse(run_acdf({"info", "--json", folder / "sky.acdf"}).out);
+    const std::uint64_t bytes = info["bytes"], tables = info["table_bytes"];
+    EXPECT_EQ(bytes, std::filesystem::file_size(folder / "sky.acdf"));
+    EXPECT_GT(tables, 0u);
+    EXPECT_EQ(json["samplers"][1]["bytes"], bytes + tables) << "what a renderer's memory holds";
 }
 
 } // namespace

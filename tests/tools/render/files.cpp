@@ -3,6 +3,8 @@
 #include "tools/render/output_files.h"
 #include "tools/render/sampler_spec.h"
 
+#include <acdf/builder.h>
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -72,6 +74,7 @@ TEST(RenderSceneFile, MistakesAreNamedWithTheirPlace) {
         {"/image/width", 1.5, "image.width: is 1.5, not a whole number"},
         {"/light/built_in", "sky", "light: needs one of 'probe' and 'built_in'"},
         {"/light/projection", "flat", "light.projection: is no projection"},
+        {"/light/filter", "cubic", "light.filter: is no filter: nearest, bilinear"},
         {"/light/probe", "", "light.probe: is empty"},
         {"/light/probe", "a\nb", "light.probe: has control characters"},
         {"/objects", Json::array(), "objects: is empty"},
@@ -148,7 +151,10 @@ std::string spec_error(const std::string& text) {
 TEST(RenderSampler, TextsAreUnderstood) {
     EXPECT_EQ(parse_sampler("full-cdf").kind, SamplerKind::full_cdf);
     EXPECT_EQ(parse_sampler("local:1MB").bytes, 1000000u);
-    EXPECT_EQ(parse_sampler("env").bytes, 65536u);
+    EXPECT_EQ(parse_sampler("env").bytes, builder::DefaultBudget::environment);
+    EXPECT_EQ(parse_sampler("local").bytes, builder::DefaultBudget::local);
+    EXPECT_EQ(parse_sampler("visibility").bytes, builder::DefaultBudget::visibility);
+    EXPECT_EQ(parse_sampler("brdf").bytes, builder::DefaultBudget::brdf);
     EXPECT_EQ(parse_sampler("tiles:64x32").columns, 64u);
     EXPECT_EQ(parse_sampler("tiles").rows, 16u);
     EXPECT_EQ(parse_sampler("visibility-cache:8x4").columns, 8u);

@@ -2,6 +2,7 @@
 #include "tests/tools/render/scenes.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,5 @@
 // Every sampler on a small scene with shadows and two materials: none may be biased.
+#include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/tools/render/scenes.h"
 
@@ -24,7 +25,8 @@ struct SmallScene {
         target = compress::environment_target(loaded->probe.rgb.data(), 32, 16, compress::TargetOptions());
         std::vector<const input::Brdf*> brdfs;
         for (const auto& brdf : loaded->brdfs) brdfs.push_back(brdf.get());
-        builder = std::make_unique<SamplerBuilder>(acdf::builder::target_of(target, {}), brdfs, folder.data());
+        builder = std::make_unique<SamplerBuilder>(acdf::builder::target_of(target, acdf::test::nearest_lookup()),
+                                                   brdfs, folder.data());
     }
     Comparison compare(const std::vector<std::string>& samplers, std::uint32_t seeds, bool timing = false,
                        measure::Numbers numbers = measure::Numbers::independent) {

@@ -28,7 +28,7 @@ inline std::vector<float> small_probe() {
 inline std::string small_scene(const std::string& samplers) {
     return R"({"camera": {"from": [4, -1, 2], "to": [0, 0, 0.7], "fov": 35},
  "image": {"width": 8, "height": 6},
- "light": {"probe": "probe.pfm", "projection": "latlong"},
+ "light": {"probe": "probe.pfm", "projection": "latlong", "filter": "nearest"},
  "objects": [
   {"plane": {"z": 0, "extent": 4}, "brdf": "lambert:albedo=0.5"},
   {"sphere": {"centre": [0, 0, 1], "radius": 1}, "brdf": "ggx:alpha=0.4", "tint": [0.9, 0.7, 0.5]},
@@ -57,7 +57,7 @@ inline std::string room(bool y_up = false) {
 /// A scene of a room; the opening of its roof is a portal. `more`: of the mesh.
 inline std::string mesh_scene(const std::string& file, const std::string& more = "") {
     return R"({"camera": {"from": [-1.7, 1.7, 1.7], "to": [0.6, -0.6, 0.3], "fov": 60}, "image": {"width": 12, "height": 9},
- "light": {"probe": "probe.pfm", "projection": "latlong"}, "portals": [{"corner": [-2, 0, 2], "across": [4, 0, 0], "up": [0, 2, 0]}],
+ "light": {"probe": "probe.pfm", "projection": "latlong", "filter": "nearest"}, "portals": [{"corner": [-2, 0, 2], "across": [4, 0, 0], "up": [0, 2, 0]}],
  "objects": [{"mesh": {"file": ")" +
            file + "\"" + more + R"(}, "brdf": "lambert:albedo=0.5"}], "samples": 8, "samplers": ["local:64KiB"]})";
 }

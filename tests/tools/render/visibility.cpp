@@ -1,5 +1,6 @@
 // Files with visibility cells held to sums over all texels, at what a camera sees and anywhere:
 // docs/make/visibility.sh does the same with real probes.
+#include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
 #include "tests/tools/render/scenes.h"
@@ -31,8 +32,8 @@ struct Viewed {
         target = compress::environment_target(loaded->probe.rgb.data(), 32, 16, compress::TargetOptions());
         std::vector<const input::Brdf*> brdfs;
         for (const auto& brdf : loaded->brdfs) brdfs.push_back(brdf.get());
-        builder = std::make_unique<SamplerBuilder>(acdf::builder::target_of(target, {}), brdfs, folder.data(),
-                                                   std::vector<acdf::builder::SceneNormal>{},
+        builder = std::make_unique<SamplerBuilder>(acdf::builder::target_of(target, acdf::test::nearest_lookup()),
+                                                   brdfs, folder.data(), std::vector<acdf::builder::SceneNormal>{},
                                                    &loaded->scene.geometry, &loaded->points.points);
     }
     /// The same number of samples of each.

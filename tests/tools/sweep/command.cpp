@@ -2,6 +2,7 @@
 #include "tests/inputs/sanitized.h"
 #include "tests/tools/plot/files.h"
 #include "tests/tools/run.h"
+#include "tools/cli/sizes.h"
 
 #include <nlohmann/json.hpp>
 
@@ -31,6 +32,20 @@ Result sweep(const std::string& source, const std::string& folder, std::vector<s
     return run_acdf(words);
 }
 
+/// That a row has the size of a file, and of what it takes in memory with the tables that are made when it is
+/// opened.
+void expect_sizes_of(const nlohmann::json& row, const std::string& file) {
+    const Result told = run_acdf({"info", "--json", file});
+    ASSERT_EQ(told.code, 0) << told.err;
+    const auto info = nlohmann::json::parse(told.out);
+    const std::uint64_t bytes = info["bytes"], tables = info["table_bytes"];
+    EXPECT_EQ(row["file_bytes"], std::filesystem::file_size(file));
+    EXPECT_EQ(row["file_bytes"], bytes);
+    EXPECT_GT(tables, 0u);
+    EXPECT_EQ(row["bytes"], bytes + tables);
+    EXPECT_EQ(info["memory_bytes"], bytes + tables);
+}
+
 TEST(SweepCommand, WritesTheSameBytesEveryTime) {
     ACDF_NOT_SANITIZED();
     const Folder folder;
@@ -57,7 +72,9 @@ TEST(SweepCommand, TheCommandMakesTheRecommendedFile) {
         run_acdf({"env", probe, "--channel", "red", "--budget", "1500", "-o", file, "--json", "--quiet"});
     ASSERT_EQ(made.code, 0) << made.err;
     const auto& row = json["rows"][json["recommendation"]["row"].get<std::size_t>()];
-    EXPECT_EQ(read_text(file).size(), row["bytes"]);
+    expect_sizes_of(row, file);
+    const std::string page = read_text(folder / "out/report.html");
+    EXPECT_NE(page.find("(" + tools::to_readable_size(row["bytes"]) + " in memory)"), std::string::npos);
     const double variance = nlohmann::json::parse(made.out)["relative_variance"];
     EXPECT_NEAR(variance, row["relative_variance"], 1e-8 * variance);
 }
@@ -84,7 +101,7 @@ TEST(SweepCommand, ResampledProbesAreMeasuredAsFilesOfThemAre) {
         const auto report = nlohmann::json::parse(made.out);
         const double variance = report["relative_variance"], least = report["least_variance"];
         const auto& row = json["rows"][json["recommendation"]["row"].get<std::size_t>()];
-        EXPECT_EQ(row["bytes"], read_text(file).size());
+        expect_sizes_of(row, file);
         EXPECT_NEAR(row["relative_variance"], variance, 1e-8 * variance);
         EXPECT_GT(least, 1e-3);
         for (const auto& other : json["rows"]) {
@@ -147,7 +164,7 @@ TEST(SweepCommand, LocalFilesAreComparedInBothShapes) {
         for (std::string word; each >> word;) words.push_back(word);
         const Result file = run_acdf(words);
         EXPECT_EQ(file.code, 0) << file.err;
-        EXPECT_EQ(std::filesystem::file_size(again / "x.acdf"), row["bytes"].get<std::uintmax_t>());
+        expect_sizes_of(row, again / "x.acdf");
     }
     ASSERT_EQ(variance.size(), 2u);
     EXPECT_GT(variance["fast"], 0.0);

@@ -2,6 +2,7 @@
 #include "build/environment.h"
 #include "build/own_terms.h"
 #include "measure/samplers/full_cdf.h"
+#include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/synthetic.h"
 #include "tools/sweep/advice.h"
 #include "tools/sweep/page.h"
@@ -321,7 +322,7 @@ SweepOptions quick() {
 
 TEST(SweepRows, OfATinyProbeAreWhatTheFilesHave) {
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
-    Sweep sweep = sweep_environment(builder::target_of(target, {}), {}, quick());
+    Sweep sweep = sweep_environment(builder::target_of(target, acdf::test::nearest_lookup()), {}, quick());
     sweep.source = "tiny.exr", sweep.command = "acdf env tiny.exr", sweep.output = "tiny.acdf";
     std::map<std::string, int> systems, fits;
     for (const SweepRow& r : sweep.rows) {
@@ -340,7 +341,10 @@ TEST(SweepRows, OfATinyProbeAreWhatTheFilesHave) {
             options.fit.goal.kind = compress::Goal::Kind::budget;
             options.fit.goal.budget = r.options == "--budget 1500" ? 1500 : 2500;
             const build::Environment file = build_environment(target, {}, options);
-            EXPECT_EQ(r.bytes, file.bytes.size());
+            EXPECT_EQ(r.file_bytes, file.bytes.size());
+            File opened;
+            ASSERT_TRUE(File::from_memory(file.bytes.data(), file.bytes.size(), opened).ok());
+            EXPECT_EQ(r.bytes, opened.size() + opened.table_bytes());
             EXPECT_EQ(r.relative_variance, file.accuracy.relative_variance);
         }
     }
@@ -361,11 +365,12 @@ TEST(SweepRows, WhatIsOutOfReachIsTold) {
     options.budgets = {100, 2500};
     options.fits = {"variance"};
     options.pictures = false;
-    const Sweep sweep = sweep_environment(builder::target_of(target, {}), {}, options);
+    const Sweep sweep = sweep_environment(builder::target_of(target, acdf::test::nearest_lookup()), {}, options);
     ASSERT_EQ(sweep.notes.size(), 1u);
     EXPECT_NE(sweep.notes[0].find("100 bytes"), std::string::npos) << sweep.notes[0];
     options.budgets = {100};
-    EXPECT_THROW(sweep_environment(builder::target_of(target, {}), {}, options), std::invalid_argument);
+    EXPECT_THROW(sweep_environment(builder::target_of(target, acdf::test::nearest_lookup()), {}, options),
+                 std::invalid_argument);
 }
 
 } // namespace

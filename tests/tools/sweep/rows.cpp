@@ -1,6 +1,7 @@
 // Rows of sweeps of local and BRDF files.
 #include "build/own_terms.h"
 #include "input/brdf/brdf.h"
+#include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/synthetic.h"
 #include "tools/sweep/sweep.h"
 
@@ -28,7 +29,7 @@ SweepOptions small_sweep() {
 TEST(SweepRows, LocalFilesBesideTheirBaselines) {
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
     SweepOptions options = small_sweep();
-    const Sweep sweep = sweep_local(builder::target_of(target, {}), {}, options);
+    const Sweep sweep = sweep_local(builder::target_of(target, acdf::test::nearest_lookup()), {}, options);
     std::map<std::string, const SweepRow*> by;
     for (const SweepRow& r : sweep.rows) by[r.system] = &r;
     ASSERT_EQ(by.size(), 8u);
@@ -51,7 +52,8 @@ TEST(SweepRows, SobolOfOneSampleIsWhatTheSumsTell) {
     options.visible.spp = 1;
     options.seeds = 2000;
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
-    for (const SweepRow& r : sweep_local(builder::target_of(target, {}), {}, options).rows)
+    for (const SweepRow& r :
+         sweep_local(builder::target_of(target, acdf::test::nearest_lookup()), {}, options).rows)
         if (r.relative_variance > 0.1 && r.system != "resampling_32") {
             EXPECT_NEAR(r.sobol, r.relative_variance, 0.1 * r.relative_variance) << r.label;
         }

@@ -114,15 +114,18 @@ TEST(SweepSurface, DrawnVariancesAreThoseOfTheSums) {
     const std::vector<SurfacePoint> points = behind_occluders(target, 12);
     const auto exact = point_variances(target, texel_pdfs(target, *sampler), points);
     const SurfaceVariances sums = summary(exact, Scale::picture);
-    const SampledVariances two = sobol_variances(target, *sampler, points, exact, Scale::picture, 2, 1500);
+    const SampledVariances two =
+        sobol_variances(target, measure::MapLight(target), *sampler, points, exact, Scale::picture, 2, 1500);
     // Of two Sobol' points: less than of two independent ones; with an MIS partner a set of one each: exactly
     // those.
     EXPECT_LT(two.alone, sums.alone.mean);
     EXPECT_NEAR(two.partner, sums.partner.mean, 0.1 * sums.partner.mean);
-    const SampledVariances many = sobol_variances(target, *sampler, points, exact, Scale::picture, 64, 100);
+    const SampledVariances many =
+        sobol_variances(target, measure::MapLight(target), *sampler, points, exact, Scale::picture, 64, 100);
     EXPECT_LT(many.alone, 0.7 * sums.alone.mean);
     EXPECT_LT(many.partner, 0.7 * sums.partner.mean);
-    const SampledVariances again = sobol_variances(target, *sampler, points, exact, Scale::picture, 64, 100);
+    const SampledVariances again =
+        sobol_variances(target, measure::MapLight(target), *sampler, points, exact, Scale::picture, 64, 100);
     EXPECT_EQ(many.alone, again.alone);
     EXPECT_EQ(many.partner, again.partner);
 }

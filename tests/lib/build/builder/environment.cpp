@@ -180,14 +180,14 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryProjection) {
         EnvironmentOptions options;
         options.goal = builder::Goal::of_budget(4000);
         options.codec = ACDF_CODEC_ZLIB;
-        options.target.filter = ACDF_FILTER_BILINEAR;
+        options.target.filter = ACDF_FILTER_NEAREST;
         options.source = {"p.pfm", input::file_sha256(folder / "p.pfm"), "",
                           std::string("--projection ") + layout.name + " "};
         Pixels pixels = pixels_of(rgb, layout.width, layout.height);
         pixels.projection = layout.projection;
         EXPECT_EQ(bytes_of(pixels, options),
                   program_bytes({"env", folder / "p.pfm", "--projection", layout.name, "--budget", "4000",
-                                 "--compress", "zlib", "--filter", "bilinear"},
+                                 "--compress", "zlib", "--filter", "nearest"},
                                 folder / "p.acdf"))
             << layout.name << " " << layout.width;
         if (acdf_test::kSanitized) break; // test_build and test_projection resample the others
@@ -213,7 +213,8 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryFit) {
     EnvironmentOptions options;
     options.goal = builder::Goal::of_variance(0.02);
     options.fit.max_weight = 40.0;
-    expect_same(options, {"--target-variance", "0.02", "--max-weight", "40"});
+    options.target.filter = ACDF_FILTER_NEAREST; // within texels interpolated light has more by itself
+    expect_same(options, {"--target-variance", "0.02", "--max-weight", "40", "--filter", "nearest"});
     options = {};
     options.goal = builder::Goal::of_cells(300);
     options.target.channels = {ACDF_CHANNELS_SEPARATE, {1.0, 1.0, 1.0}};
@@ -234,10 +235,10 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryFit) {
     options.fit.fit = ACDF_FIT_UNIFORM;
     expect_same(options, {"--fit", "uniform"});
     options = {};
-    options.target.wrap = Wrap::repeat; // of a nearest lookup, which knows none
+    options.target.wrap = Wrap::repeat;
     expect_same(options, {"--wrap", "repeat"});
-    options.target.filter = ACDF_FILTER_BILINEAR;
-    expect_same(options, {"--filter", "bilinear", "--wrap", "repeat"});
+    options.target.filter = ACDF_FILTER_NEAREST; // whose lookup knows none
+    expect_same(options, {"--filter", "nearest", "--wrap", "repeat"});
 }
 
 TEST(Builder, MakesWhatTheProgramMakesForARenderer) {

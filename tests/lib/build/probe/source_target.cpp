@@ -11,6 +11,7 @@
 #include "tests/inputs/sanitized.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 #include <gtest/gtest.h>
 
 #include <array>

@@ -6,6 +6,7 @@
 #include "compress/store/store.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

@@ -62,8 +62,16 @@ TEST(FileSamplers, EnvironmentAndLocalFilesSampleByTheirPdf) {
     ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), environment).ok());
 
     const LightSamplerPtr everywhere = file_sampler(environment), local = file_sampler(map.file);
-    EXPECT_EQ(everywhere->bytes(), bytes.size());
-    EXPECT_EQ(local->bytes(), map.bytes.size());
+    EXPECT_EQ(everywhere->bytes(), bytes.size() + environment.table_bytes());
+    EXPECT_GT(map.file.table_bytes(), 0u);
+    EXPECT_EQ(local->bytes(), map.bytes.size() + map.file.table_bytes());
+    // What is inflated is in memory, too.
+    const std::vector<std::uint8_t> packed =
+        acdf::compress::store(acdf::compress::fit(t, fit).tree, description, ACDF_CODEC_ZLIB);
+    acdf::File inflated;
+    ASSERT_TRUE(acdf::File::from_memory(packed.data(), packed.size(), inflated).ok());
+    EXPECT_LT(packed.size(), bytes.size());
+    EXPECT_GT(memory_of(inflated), packed.size() + inflated.table_bytes() + bytes.size() / 2);
     for (const ShadingPoint& point : some_points()) {
         SamplerCheck check;
         check.disagreeing = 1e-4;

@@ -84,7 +84,7 @@ TEST(Product, SamplesByItsPdf) {
     const std::vector<Light>& all_lights = lights();
     const std::vector<Surface>& all_surfaces = surfaces();
     SamplerCheck check;
-    // Cells of a BRDF cut across what is summed here; tests/lib/reader/product.cpp has the integral to 1e-5.
+    // Cells of a BRDF cut across what is summed here; tests/lib/product/product.cpp has the integral to 1e-5.
     check.tolerance = 1e-2;
     check.samples = 4000;
     int i = 0;

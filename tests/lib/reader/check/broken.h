@@ -6,6 +6,7 @@
 #include "tests/lib/reader/planes.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <limits>
 #include <vector>

@@ -5,6 +5,7 @@
 #include "tests/lib/reader/builder.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <vector>
 

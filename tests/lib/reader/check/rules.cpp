@@ -1,4 +1,5 @@
 // For every rule of the table a file that breaks it and no other.
+#include "reader/check/rule_codes.h"
 #include "tests/lib/reader/brdf_builder.h"
 #include "tests/lib/reader/check/broken.h"
 #include "tests/lib/reader/check/cases.h"
@@ -36,7 +37,7 @@ TEST_P(BrokenRule, isFoundAndNoOther) {
     EXPECT_EQ(std::set<int>(found.rules.begin(), found.rules.end()), std::set<int>{c.rule}) << found.text;
     EXPECT_LE(found.last_offset, file.size());
     const acdf::Status status = load(file, c.limits);
-    EXPECT_EQ(status.code, rule->code);
+    EXPECT_EQ(status.code, acdf::code_of(c.rule));
     if (rule->severity == acdf::Severity::warning) return;
     EXPECT_EQ(status.rule, c.rule) << status.message;
     EXPECT_NE(std::strstr(status.message, std::to_string(c.rule).c_str()), nullptr) << status.message;
@@ -129,7 +130,8 @@ TEST(Rules, areSortedAndNamedOnce) {
         }
         const bool same_id_elsewhere = !ids.insert(rule.id).second;
         EXPECT_FALSE(same_id_elsewhere) << rule.number << ' ' << rule.id;
-        EXPECT_EQ(rule.severity == acdf::Severity::warning, rule.code == acdf::ErrorCode::none) << rule.number;
+        EXPECT_EQ(rule.severity == acdf::Severity::warning, acdf::code_of(rule.number) == acdf::ErrorCode::none)
+            << rule.number;
     }
     EXPECT_EQ(acdf::find_rule(2002), &acdf::rules[5]);
     EXPECT_EQ(acdf::find_rule(9999), nullptr);

@@ -16,7 +16,7 @@
 #pragma clang force_cuda_host_device end
 #endif
 
-#include <acdf/product.h>
+#include <acdf/product/product.h>
 #include <acdf/views.h>
 
 typedef acdf::ProductSampler<acdf::BrdfLobe> Product;

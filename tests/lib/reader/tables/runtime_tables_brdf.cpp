@@ -1,8 +1,8 @@
 // Runtime tables of BRDFs beside the walk that they stand for: the same samples and densities to the bit, on files
 // made by hand, of many cells and of the frozen ones.
+#include "tests/lib/batch/brdf.h"
 #include "tests/lib/reader/brdf_forms.h"
 #include "tests/lib/reader/tables/tables_pair.h"
-#include "tests/lib/reader/waves/brdf.h"
 
 #include <fstream>
 #include <iterator>
@@ -22,11 +22,11 @@ bool same(const acdf::DirectionSample& a, const acdf::DirectionSample& b) {
 
 void expect_the_walk(const BrdfPair& pair, std::size_t count) {
     const acdf::BrdfView fast = pair.fast.brdf(), plain = pair.plain.brdf();
-    const Wave wave(plain, count);
+    const Queries asked(plain, count);
     std::size_t strays = 0; // out of the cell whose density they have: floats do not tell cells of 2^-24 apart
     for (std::size_t i = 0; i < count; ++i) {
-        const float *wo = wave.wo()[i], *wi = wave.wi()[i];
-        const double* u = wave.u()[i];
+        const float *wo = asked.wo()[i], *wi = asked.wi()[i];
+        const double* u = asked.u()[i];
         ASSERT_TRUE(same(fast.sample(wo, u[0], u[1]), plain.sample(wo, u[0], u[1]))) << i;
         ASSERT_EQ(fast.pdf(wo, wi), plain.pdf(wo, wi)) << i;
         AcdfBrdfView views[2];

@@ -7,8 +7,9 @@
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/tables/tables_pair.h"
 
-#include <acdf/cut.h>
+#include <acdf/product/cut.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

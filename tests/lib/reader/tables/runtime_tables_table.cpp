@@ -8,6 +8,7 @@
 
 #include <acdf/builder.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

@@ -51,9 +51,9 @@ struct Squares {
     }
 };
 
-Squares made(const std::vector<KeyBox>& boxes, u32 bits, acdf::Instructions most = acdf::Instructions::avx512) {
+Squares made(const std::vector<KeyBox>& boxes, u32 bits) {
     acdf::KeyBoxes keys;
-    acdf::SquaresMaker maker(nullptr, most);
+    acdf::SquaresMaker maker;
     Squares out;
     for (const KeyBox& box : boxes) keys.add(box.span[0], box.span[1]);
     EXPECT_TRUE(maker.make(keys, bits, std::size_t{1} << 14));
@@ -81,20 +81,6 @@ TEST(Squares, TellOfEachBox) {
                     }
             }
             EXPECT_LT(named, 3 * asked); // corners have neighbours
-        }
-}
-
-// Blocks of few bits, and rectangles so small that sides are told in other steps than of the whole square.
-TEST(Squares, AreTheSameByAnyInstructions) {
-    for (const u32 bits : {6u, 13u, 31u})
-        for (const std::size_t count : {17u, 33u, 1000u, 20000u}) {
-            SCOPED_TRACE(testing::Message() << count << " boxes, " << bits << " bits");
-            std::vector<KeyBox> boxes =
-                random_boxes(bits == 6 ? std::min<std::size_t>(count, 1000) : count, bits, 3);
-            for (std::size_t i = 0; i < boxes.size(); i += 11) boxes[i].span[i % 2] = {1, 0};
-            const Squares squares = made(boxes, bits, acdf::Instructions::none);
-            EXPECT_EQ(made(boxes, bits, acdf::Instructions::avx2).words, squares.words);
-            EXPECT_EQ(made(boxes, bits, acdf::Instructions::avx512).words, squares.words);
         }
 }
 

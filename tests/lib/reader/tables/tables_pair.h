@@ -2,6 +2,7 @@
 #pragma once
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

@@ -11,6 +11,7 @@
 #include "reader/tables/tree_survey.h"
 
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,57 @@
+// Lights that lanes draw in files of the fast shape: acdf_local_fast_bright_tile over vectors of such lanes, which
+// are packed behind each other, since few draws fall into bright tiles. Internal linkage: see local_kernel.h.
+#pragma once
+
+#include "batch/fast_vectors.h"
+
+namespace {
+
+/// Lanes that draw bright tiles by x of the sum of weights: the first light that takes that sum above x, its weight
+/// and the sum before it; weight 0 where there is none.
+struct LightDraws {
+    Vector x, weight = all(0.0), before = all(0.0);
+    Integer number = {};
+    Mask passed = no_lanes(); // those that have theirs
+
+    ACDF_LANE_MEMBER explicit LightDraws(Vector at) : x(at) {}
+    /* The next light: sums never fall. */
+    ACDF_LANE_MEMBER void offer(std::uint32_t light, Vector its_weight, Vector begin, Vector end) {
+        const Mask above = less(x, end), is = without(above, passed);
+        passed = above;
+        weight = choose(is, its_weight, weight);
+        before = choose(is, begin, before);
+        number = choose(is, Integer{} + (long long)light, number);
+    }
+};
+
+/* The bright tiles of normals of their own: acdf_local_tabled_bright_tiles of all that some triangle may see. */
+template <class P>
+ACDF_LANE void offer_lights(const AcdfLocal& local, const PointsOf<P>&, const FastPointLanes& lanes,
+                            const long long lane[ACDF_WIDTH], LightDraws* draws) {
+    const AcdfBrightTilePair* const pair = acdf_local_bright_tiles(local.tables);
+    const Corners at = corners_at(lanes.bright_tiles, loaded(lane));
+    const Vector inverse = 1.0 / at.length;
+    std::uint32_t seen = 0;
+    for (int i = 0; i < ACDF_WIDTH; ++i) seen |= facet_at(local, lanes.facet[lane[i]]).seen;
+    Vector end = all(0.0);
+    for (; seen; seen &= seen - 1) {
+        const std::uint32_t k = acdf_lowest_bit(seen);
+        const Vector first = pair_weight(at, pair[k], 0, inverse), second = pair_weight(at, pair[k], 1, inverse);
+        const Vector middle = first + end, last = (second + first) + end;
+        draws->offer(2 * k, first, end, middle);
+        draws->offer(2 * k + 1, second, middle, last);
+        end = last;
+    }
+}
+
+/* Those of one point. */
+template <class P>
+ACDF_LANE void offer_lights(const AcdfLocal&, const OnePoint<P>& at, const FastPointLanes&, const long long*,
+                            LightDraws* draws) {
+    const AcdfLocalPoint& point = at.point;
+    for (std::uint32_t i = 0; i < point.lit; ++i)
+        draws->offer(acdf_local_lit(&point, i), all(point.light[i]), all(i > 0 ? point.light_end[i - 1] : 0.0),
+                     all(point.light_end[i]));
+}
+
+} // namespace

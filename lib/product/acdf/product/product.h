@@ -1,0 +1,294 @@
+// Sampling directions of light from the product of light, cosine and BRDF at a shading point, with their exact
+// density. C++17, header only, freestanding over acdf/product/cut_sample.h and acdf/brdf.h: no allocation, no
+// exceptions, no errors. For kernels define ACDF_METHOD, for example as __host__ __device__.
+//
+//   acdf::ProductSampler sampler(local.data(), acdf::BrdfLobe(brdf.data()));   // of a LocalEnvironmentView, a
+//   BrdfView auto point = sampler.at(acdf::surface_frame(normal), wo);                  // once a shading point
+//   acdf::ProductSample s = sampler.sample(point, u0, u1);                     // s.direction, s.pdf in sr^-1
+//   float p = sampler.pdf(point, direction);                                   // of any direction
+//   sampler.sample(point, 16, u, out);                      // the same to the bit, several at once: in less time
+//   sampler.pdf(point, 16, directions, out);                // by ProductOptions::vectors in less still
+//
+// The tiles of the local file are a hierarchy whose nodes know the light times cosine in them (Lawrence et al.
+// 2005, §7.1). `at` divides those nodes in which light times BRDF is large until a number of parts is reached,
+// looking at the BRDF once a division, where the new part is lit most, and at a few samples of the BRDF's own
+// sampler. Within a part directions follow light and cosine. What is left, lobes that are narrower than a part, is
+// for the BRDF's own sampler: it gets a share of the samples, which grows with the differences between neighbouring
+// parts and falls with those of the light within the lobe, and the parts get what it does not give already. The
+// density is that of the mixture.
+#pragma once
+
+#include <acdf/product/cut_batch.h>
+#include <acdf/product/product_cut.h>
+#include <acdf/product/product_groups.h>
+
+namespace acdf {
+
+/// How much work `at` does.
+struct ProductOptions {
+    /// Into how many parts the sphere is divided, 1 to ACDF_CUT_MAX_PARTS: the BRDF is evaluated about once a part.
+    /// More pay where more samples are taken. 1: light times cosine and the BRDF half and half.
+    int parts = 64;
+    /// Several samples and pdfs at once take less time by vectors: acdf_product_vectors(). Results are the same.
+    const AcdfProductVectors* vectors = nullptr;
+};
+
+/// A shading point, ready to be sampled from. Plain data of bounded size.
+template <class LobePoint>
+struct ProductPoint {
+    SurfaceFrame frame;
+    AcdfLocalPoint light; ///< what serves the normal
+    union {               // empty where the light's own density is used as it is, or not at all
+        AcdfCut cut;
+        AcdfFastCut fast; ///< of bright tiles of the fast shape
+    };
+    LobePoint lobe;
+    double share; ///< of the samples that the BRDF's own sampler samples; below 0: nothing is sampled
+};
+
+/// Made of the light, of a local environment file or of an environment file, and a lobe. Samples from bright tiles
+/// that shared tiles describe follow the product; all others mix those of the light's own density and of the BRDF's
+/// half and half. Holds views: valid while their files live. All functions are const, thread-safe, allocate and
+/// throw nothing.
+template <class AnyLobe>
+class ProductSampler {
+public:
+    using Point = ProductPoint<typename AnyLobe::Point>;
+
+    ACDF_METHOD ProductSampler(const AcdfLocal& light, const AnyLobe& lobe,
+                               const ProductOptions& options = {}) noexcept
+        : light_(light), local_(true), lobe_(lobe), parts_(options.parts), vectors_(options.vectors) {}
+    ACDF_METHOD ProductSampler(const AcdfEnvironment& light, const AnyLobe& lobe,
+                               const ProductOptions& options = {}) noexcept
+        : light_(), local_(false), lobe_(lobe), parts_(options.parts), vectors_(options.vectors) {
+        light_.environment = light;
+    }
+
+    /// Prepares a shading point, for any number of samples. `wo`: towards the viewer, a unit vector in the frame of
+    /// directions.
+    ACDF_METHOD Point at(const SurfaceFrame& frame, const float wo[3]) const noexcept {
+        return at(nullptr, frame, wo);
+    }
+    /// The same where the light's file stores visibility cells: at a `position` of its scene; null: anywhere.
+    ACDF_METHOD Point at(const float position[3], const SurfaceFrame& frame, const float wo[3]) const noexcept;
+    /// The same with a frame of its own around the unit `normal`: for BRDFs that are the same all around it.
+    ACDF_METHOD Point at(const float normal[3], const float wo[3]) const noexcept {
+        return at(surface_frame(normal), wo);
+    }
+
+    /// Samples a direction; u0 and u1 in [0, 1]. pdf in sr^-1; 0 where nothing is sampled: it counts as 0, as do
+    /// directions below the surface.
+    ACDF_METHOD ProductSample sample(const Point& point, double u0, double u1) const noexcept;
+    /// The same of u[i] into out[i], i < count, to the bit: in less time where a point is sampled from several
+    /// times.
+    ACDF_METHOD void sample(const Point& point, std::size_t count, const double (*u)[2],
+                            ProductSample* out) const noexcept;
+    /// Density in sr^-1 of a unit direction; exactly that of `sample` for what it returned. Positive wherever that
+    /// of the lobe's own sampler is.
+    ACDF_METHOD float pdf(const Point& point, const float direction[3]) const noexcept;
+    /// The same of directions[i] into out[i], i < count, to the bit: in less time, as for samples of bright tiles.
+    ACDF_METHOD void pdf(const Point& point, std::size_t count, const float (*directions)[3],
+                         float* out) const noexcept;
+
+private:
+    ACDF_METHOD float light_pdf(const Point& point, const float direction[3]) const noexcept;
+    ACDF_METHOD float lobe_pdf(const Point& point, const float direction[3]) const noexcept {
+        float wi[3];
+        point.frame.to_local(direction, wi);
+        return lobe_.pdf(point.lobe, wi);
+    }
+    /// Several of the light's part, where a cut is sampled from.
+    ACDF_METHOD void light_samples(const Point& point, std::size_t count, const double (*u)[2],
+                                   ProductSample* out) const noexcept;
+    ACDF_METHOD void light_pdfs(const Point& point, std::size_t count, const float (*directions)[3],
+                                float* out) const noexcept;
+    ACDF_METHOD static float mixed(const Point& point, float light, float lobe) noexcept;
+    /// Whether a cut is sampled from, and the lobe.
+    ACDF_METHOD static bool samples_both(const Point& point) noexcept {
+        return (point.light.what == ACDF_LOCAL_BLEND || samples_groups(point)) && point.share >= 0.0 &&
+               point.share < 1.0;
+    }
+    ACDF_METHOD static bool samples_groups(const Point& point) noexcept {
+        return point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0;
+    }
+    ACDF_METHOD void sample_batch(const Point& point, std::size_t count, const double (*u)[2],
+                                  ProductSample* out) const noexcept;
+
+    AcdfLocal light_;
+    bool local_; ///< or an environment alone
+    AnyLobe lobe_;
+    int parts_;
+    const AcdfProductVectors* vectors_;
+};
+
+template <class AnyLobe>
+ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const SurfaceFrame& frame,
+                                             const float wo[3]) const noexcept -> Point {
+    Point point;
+    float local_wo[3];
+    point.frame = frame;
+    point.cut.count = 0;
+    point.share = -1.0;
+    frame.to_local(wo, local_wo);
+    point.light.what = ACDF_LOCAL_NOTHING;
+    if (!lobe_.at(local_wo, point.lobe)) return point;
+    if (local_) {
+        if (position) acdf_local_at_cells(&light_, position, frame.normal, &point.light);
+        else acdf_local_at(&light_, frame.normal, &point.light);
+    } else {
+        point.light.what = ACDF_LOCAL_TREE;
+        point.light.root = light_.environment.root;
+        point.light.visibility.count = 0;
+        point.light.visible_portals.count = 0;
+    }
+    point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
+    const PointOfLobe<AnyLobe> of_lobe = {light_, point.light, point.frame, lobe_, point.lobe, parts_, vectors_};
+    if (point.light.what == ACDF_LOCAL_BLEND) {
+        point.share = CutRating<AnyLobe>(of_lobe, point.cut).make();
+    } else if (point.light.what == ACDF_LOCAL_FAST) {
+        point.fast.whole = 0;
+        if (parts_ > 1 && acdf_fast_cut_serves(&light_))
+            point.share = GroupRating<AnyLobe>(of_lobe).make(point.fast);
+    }
+    return point;
+}
+
+template <class AnyLobe>
+ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const float direction[3]) const noexcept {
+    if (!(point.share >= 0.0 && point.share < 1.0)) return 0.0f;
+    if (point.light.what == ACDF_LOCAL_BLEND) return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
+    if (samples_groups(point)) return acdf_fast_cut_pdf(&light_, &point.light, &point.fast, direction);
+    return acdf_local_pdf_at(&light_, &point.light, direction);
+}
+
+template <class AnyLobe>
+ACDF_METHOD void ProductSampler<AnyLobe>::light_samples(const Point& point, std::size_t count, const double (*u)[2],
+                                                        ProductSample* out) const noexcept {
+    if (point.light.what == ACDF_LOCAL_BLEND) {
+        acdf_cut_sample_batch(vectors_, &light_, &point.light, &point.cut, u, count, out);
+        return;
+    }
+    acdf_fast_cut_sample_batch(vectors_, &light_, &point.light, &point.fast, u, count, out);
+}
+template <class AnyLobe>
+ACDF_METHOD void ProductSampler<AnyLobe>::light_pdfs(const Point& point, std::size_t count,
+                                                     const float (*directions)[3], float* out) const noexcept {
+    if (point.light.what == ACDF_LOCAL_BLEND) {
+        acdf_cut_pdf_batch(vectors_, &light_, &point.light, &point.cut, directions, count, out);
+        return;
+    }
+    acdf_fast_cut_pdf_batch(vectors_, &light_, &point.light, &point.fast, directions, count, out);
+}
+
+/// Of the mixture, by those of its parts.
+template <class AnyLobe>
+ACDF_METHOD float ProductSampler<AnyLobe>::mixed(const Point& point, float light, float lobe) noexcept {
+    const double pdf = (1.0 - point.share) * double{light} + point.share * double{lobe};
+    if (!(pdf > 0.0)) return 0.0f;
+    return static_cast<float>(acdf_clamp(pdf, 1.17549435e-38, 3.402823466e38));
+}
+
+template <class AnyLobe>
+ACDF_METHOD float ProductSampler<AnyLobe>::pdf(const Point& point, const float direction[3]) const noexcept {
+    if (!(point.share >= 0.0)) return 0.0f;
+    const float lobe = lobe_pdf(point, direction); // first: it waits while the light's branches are guessed
+    return mixed(point, light_pdf(point, direction), lobe);
+}
+
+template <class AnyLobe>
+ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, double u0, double u1) const noexcept {
+    ProductSample out = {{0.0f, 0.0f, 0.0f}, 0.0f};
+    if (!(point.share >= 0.0)) return out;
+    const double u = acdf_unit_interval(u0);
+    if (u < point.share || !(point.share < 1.0)) {
+        const ProductSample s = lobe_.sample(point.lobe, u / point.share, u1);
+        if (!(s.pdf > 0.0f)) return out;
+        point.frame.to_world(s.direction, out.direction);
+        out.pdf = pdf(point, out.direction); // of the direction as it was rounded
+        return out;
+    }
+    const double rest = (u - point.share) / (1.0 - point.share);
+    if (point.light.what == ACDF_LOCAL_BLEND) {
+        out = acdf_cut_sample(&light_, &point.light, &point.cut, rest, u1);
+    } else if (samples_groups(point)) {
+        out = acdf_fast_cut_sample(&light_, &point.light, &point.fast, rest, u1);
+    } else {
+        out = acdf_local_sample_at(&light_, &point.light, rest, u1);
+        if (out.pdf > 0.0f) out.pdf = light_pdf(point, out.direction);
+    }
+    if (out.pdf > 0.0f) out.pdf = mixed(point, out.pdf, lobe_pdf(point, out.direction));
+    return out;
+}
+
+/// Samples up to ACDF_CUT_BATCH of a point whose cut is sampled from, and its lobe.
+template <class AnyLobe>
+ACDF_METHOD void ProductSampler<AnyLobe>::sample_batch(const Point& point, std::size_t count, const double (*u)[2],
+                                                       ProductSample* out) const noexcept {
+    std::size_t of_light[ACDF_CUT_BATCH], of_lobe[ACDF_CUT_BATCH], lit = 0;
+    double rest[ACDF_CUT_BATCH][2];
+    ProductSample sampled[ACDF_CUT_BATCH];
+    float directions[ACDF_CUT_BATCH][3], wi[ACDF_CUT_BATCH][3], light[ACDF_CUT_BATCH], lobe[ACDF_CUT_BATCH];
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = acdf_unit_interval(u[i][0]);
+        rest[lit][0] = (x - point.share) / (1.0 - point.share);
+        rest[lit][1] = u[i][1];
+        of_light[lit] = of_lobe[i - lit] = i;
+        lit += static_cast<std::size_t>(!(x < point.share));
+    }
+    const std::size_t reflected = count - lit;
+    light_samples(point, lit, rest, sampled);
+    for (std::size_t k = 0; k < lit; ++k) {
+        out[of_light[k]] = sampled[k];
+        light[of_light[k]] = sampled[k].pdf;
+    }
+    for (std::size_t k = 0; k < reflected; ++k) {
+        rest[k][0] = acdf_unit_interval(u[of_lobe[k]][0]) / point.share;
+        rest[k][1] = u[of_lobe[k]][1];
+    }
+    lobe_samples(lobe_, point.lobe, rest, reflected, sampled, 0);
+    for (std::size_t k = 0; k < reflected; ++k) point.frame.to_world(sampled[k].direction, directions[k]);
+    light_pdfs(point, reflected, directions, lobe);
+    for (std::size_t k = 0; k < reflected; ++k) {
+        const std::size_t i = of_lobe[k];
+        out[i] = {{directions[k][0], directions[k][1], directions[k][2]}, sampled[k].pdf};
+        light[i] = lobe[k];
+    }
+    for (std::size_t i = 0; i < count; ++i) point.frame.to_local(out[i].direction, wi[i]);
+    lobe_pdfs(lobe_, point.lobe, wi, count, lobe, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (out[i].pdf > 0.0f) out[i].pdf = mixed(point, light[i], lobe[i]);
+        else out[i] = {{0.0f, 0.0f, 0.0f}, 0.0f};
+    }
+}
+
+template <class AnyLobe>
+ACDF_METHOD void ProductSampler<AnyLobe>::sample(const Point& point, std::size_t count, const double (*u)[2],
+                                                 ProductSample* out) const noexcept {
+    constexpr std::size_t batch = ACDF_CUT_BATCH;
+    const bool both = samples_both(point);
+    for (std::size_t first = 0; both && first < count; first += batch)
+        sample_batch(point, count - first < batch ? count - first : batch, u + first, out + first);
+    for (std::size_t i = 0; !both && i < count; ++i) out[i] = sample(point, u[i][0], u[i][1]);
+}
+
+template <class AnyLobe>
+ACDF_METHOD void ProductSampler<AnyLobe>::pdf(const Point& point, std::size_t count, const float (*directions)[3],
+                                              float* out) const noexcept {
+    if (!samples_both(point)) {
+        for (std::size_t i = 0; i < count; ++i) out[i] = pdf(point, directions[i]);
+        return;
+    }
+    float wi[ACDF_CUT_BATCH][3], light[ACDF_CUT_BATCH], lobe[ACDF_CUT_BATCH];
+    for (; count > 0;) {
+        const std::size_t some = count < ACDF_CUT_BATCH ? count : std::size_t{ACDF_CUT_BATCH};
+        for (std::size_t i = 0; i < some; ++i) point.frame.to_local(directions[i], wi[i]);
+        light_pdfs(point, some, directions, light);
+        lobe_pdfs(lobe_, point.lobe, wi, some, lobe, 0);
+        for (std::size_t i = 0; i < some; ++i) out[i] = mixed(point, light[i], lobe[i]);
+        count -= some;
+        directions += some;
+        out += some;
+    }
+}
+
+} // namespace acdf

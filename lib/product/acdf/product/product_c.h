@@ -1,0 +1,68 @@
+/* Product sampling (acdf/product/product.h) from C: light times cosine times BRDF at a shading point, with its
+ * exact density. Linked, not inline. Nothing is allocated; all functions are thread-safe.
+ *
+ *   AcdfProductPoint point;
+ *   acdf_product_at(&local, &brdf, 64, frame, wo, &point);
+ *   s = acdf_product_sample(&local, &brdf, &point, u0, u1);
+ *   p = acdf_product_pdf(&local, &brdf, &point, direction);
+ *   acdf_product_samples(&local, &brdf, &point, 16, u, out);
+ */
+#ifndef ACDF_PRODUCT_C_H
+#define ACDF_PRODUCT_C_H
+
+#include <acdf/brdf.h>
+#include <acdf/local.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A shading point, ready to be sampled from: plain bytes that may be copied. */
+typedef union AcdfProductPoint {
+    unsigned char bytes[16384];
+    double align;
+} AcdfProductPoint;
+
+/* Prepares a shading point. `parts` as in acdf::ProductOptions, 1 to 96. `frame`: the surface's tangent, bitangent
+ * and normal, three unit vectors; wo: towards the viewer; both in the frame of directions. */
+void acdf_product_at(const AcdfLocal* light, const AcdfBrdf* brdf, int parts, const float frame[9],
+                     const float wo[3], AcdfProductPoint* point);
+/* Samples a direction with the light and BRDF that the point was made with; u0 and u1 in [0, 1]. pdf in sr^-1; 0
+ * where nothing is sampled: it counts as 0, as do directions below the surface. */
+AcdfDirectionSample acdf_product_sample(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point,
+                                        double u0, double u1);
+/* The same of u[i] into out[i], i < count, to the bit: in less time where a point is sampled from several times. */
+void acdf_product_samples(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point, size_t count,
+                          const double (*u)[2], AcdfDirectionSample* out);
+/* Density in sr^-1 of a unit direction; exactly that of the sample for what it returned. */
+float acdf_product_pdf(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point,
+                       const float direction[3]);
+/* The same of directions[i] into out[i], i < count, to the bit. */
+void acdf_product_pdfs(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point, size_t count,
+                       const float (*directions)[3], float* out);
+
+/* A renderer's own BRDF, as acdf::Lobe: of unit vectors in the surface's frame, wo above the surface. `data` is
+ * handed to each function. */
+typedef struct AcdfLobe {
+    const void* data;
+    float (*value)(const void* data, const float wo[3], const float wi[3]); /* the BRDF, up to a factor */
+    AcdfDirectionSample (*sample)(const void* data, const float wo[3], double u0, double u1);
+    float (*pdf)(const void* data, const float wo[3], const float wi[3]); /* of `sample`, sr^-1 */
+} AcdfLobe;
+
+/* The same five with such a BRDF. */
+void acdf_product_lobe_at(const AcdfLocal* light, const AcdfLobe* lobe, int parts, const float frame[9],
+                          const float wo[3], AcdfProductPoint* point);
+AcdfDirectionSample acdf_product_lobe_sample(const AcdfLocal* light, const AcdfLobe* lobe,
+                                             const AcdfProductPoint* point, double u0, double u1);
+void acdf_product_lobe_samples(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
+                               size_t count, const double (*u)[2], AcdfDirectionSample* out);
+float acdf_product_lobe_pdf(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
+                            const float direction[3]);
+void acdf_product_lobe_pdfs(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
+                            size_t count, const float (*directions)[3], float* out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,70 @@
+// A shading point of product sampling while its parts are rated (acdf/product/product_cut.h,
+// acdf/product/product_groups.h): its light and its lobe. C++17, header only, freestanding.
+#pragma once
+
+#include <acdf/local.h>
+#include <acdf/product/lobe.h>
+#include <acdf/product/part_rating.h>
+
+namespace acdf {
+
+template <class AnyLobe>
+struct PointOfLobe {
+    const AcdfLocal& light;
+    const AcdfLocalPoint& at; ///< of the light
+    const SurfaceFrame& frame;
+    const AnyLobe& lobe;
+    const typename AnyLobe::Point& lobe_at;
+    int parts; ///< about how many are wanted
+    const AcdfProductVectors* vectors;
+
+    /// Beyond this the lobe's value and density are not told apart: no sum of products overflows.
+    static constexpr float most_value = 1e18f;
+
+    ACDF_METHOD static float bounded(float x) noexcept { return x < most_value ? x > 0.0f ? x : 0.0f : most_value; }
+
+    /// A direction in the surface's frame, or the one above the horizon that is next to it: a part whose middle
+    /// lies below has light above, if it has any.
+    ACDF_METHOD void above_surface(const float world[3], float wi[3]) const noexcept {
+        constexpr float least = 0.02f;
+        frame.to_local(world, wi);
+        if (wi[2] >= least) return;
+        wi[2] = least;
+        const float scale = 1.0f / sqrtf(wi[0] * wi[0] + wi[1] * wi[1] + wi[2] * wi[2]);
+        for (int k = 0; k < 3; ++k) wi[k] *= scale;
+    }
+
+    /// The lobe's value and density in directions above the surface, in its frame, at most `Most`: told(i, value,
+    /// density) of each. `many`: about those, as is worth while for more than a few.
+    template <std::size_t Most, class Told>
+    ACDF_METHOD void look(int count, bool many, const float (*wi)[3], const Told& told) const noexcept {
+        float pdf[Most];
+        if (many) lobe_pdfs_about(lobe, lobe_at, wi, static_cast<std::size_t>(count), pdf, 0);
+        else lobe_pdfs(lobe, lobe_at, wi, static_cast<std::size_t>(count), pdf, 0);
+        for (int i = 0; i < count; ++i) told(i, bounded(lobe.value(lobe_at, wi[i], pdf[i])), bounded(pdf[i]));
+    }
+
+    /// Adds samples of the lobe's own sampler, without weights, to none; their directions into `world`. In their
+    /// place: what is written in pieces and copied at once would be waited for.
+    ACDF_METHOD void sample_guides(float (*world)[3], LobeGuides& out) const noexcept {
+        const AcdfGrid grid = acdf_environment_grid(&light.environment);
+        const int sampled = parts < 12 ? 2 : LobeGuides::most;
+        out.sampled = sampled;
+        for (int i = 0; i < sampled; ++i) {
+            const ProductSample s = guide(lobe, lobe_at, i, sampled);
+            if (!(s.pdf > 0.0f && s.direction[2] > 0.0f)) continue;
+            std::uint32_t square[2];
+            frame.to_world(s.direction, world[out.count]);
+            if (!acdf_local_square(&grid, world[out.count], square)) continue;
+            const float value = bounded(lobe.value(lobe_at, s.direction, s.pdf)), pdf = bounded(s.pdf);
+            if (!(value > 0.0f && pdf > 0.0f)) continue;
+            for (int axis = 0; axis < 2; ++axis) out.square[axis][out.count] = square[axis];
+            out.value[out.count] = value;
+            out.pdf[out.count] = pdf;
+            if (value > out.brightest) out.brightest = value;
+            ++out.count;
+        }
+    }
+};
+
+} // namespace acdf

@@ -1,0 +1,15 @@
+#if ACDF_BATCH_X86
+#define ACDF_WIDTH 4
+#include "product/vectors/cut.h"
+#include "product/vectors/cut_density_kernel.h"
+#include "product/vectors/cut_kernel.h"
+
+void acdf::cut_sample_avx2(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                           const double (*u)[2], std::size_t count, AcdfDirectionSample* out) {
+    draw_cut(*local, *point, *cut, u, count, out);
+}
+void acdf::cut_pdf_avx2(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                        const float (*directions)[3], std::size_t count, float* out) {
+    cut_densities(*local, *point, *cut, directions, count, out);
+}
+#endif

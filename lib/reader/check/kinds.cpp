@@ -1,0 +1,36 @@
+// What kinds ask of files that have curves.
+#include "check/kinds.h"
+
+namespace acdf {
+
+namespace {
+
+// Beside DESC and TILE, what a local environment has.
+void check_local(const Payloads& payloads, const TileBoxes& boxes, Report& report, Parts& parts) {
+    check_local_kind(payloads.of[chunk_description], payloads.of[chunk_local], boxes, report, parts);
+    if (boxes.fast) return;
+    if (payloads.of[chunk_visibility].data && !report.stopped())
+        check_visibility(payloads.of[chunk_visibility], report, parts);
+    if (payloads.of[chunk_portals].data && !report.stopped())
+        check_portals(payloads.of[chunk_portals], report, parts);
+}
+
+} // namespace
+
+void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Parts& parts) noexcept {
+    const Payload &description = payloads.of[chunk_description], &bins = payloads.of[chunk_bins];
+    TileBoxes boxes;
+    const bool fast = kind == ACDF_KIND_LOCAL && (payloads.of[chunk_sums].data || payloads.of[chunk_grid].data);
+    if (kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF) // else rule 3013
+        check_tiles(payloads.of[chunk_tiles], payloads.of[chunk_rows], fast, report, parts, boxes);
+    if (fast && !report.stopped()) check_fast(payloads, boxes, report, parts);
+    const bool tiles_ok = parts.tiles || !boxes.given; // else bins could mean anything
+    if (tiles_ok && !report.stopped()) check_tree(bins, payloads.of[chunk_tree], kind, boxes, report, parts);
+    if (report.stopped()) return;
+    if (kind == ACDF_KIND_ENVIRONMENT) check_environment(description, bins, report, parts);
+    if (kind == ACDF_KIND_LOCAL) check_local(payloads, boxes, report, parts);
+    if (kind == ACDF_KIND_BRDF) check_brdf_kind(description, payloads.of[chunk_views], report, parts);
+    if (kind == ACDF_KIND_TABLE) check_table_kind(description, bins, report, parts);
+}
+
+} // namespace acdf

@@ -1,0 +1,51 @@
+// What files of curves and of shared tiles are checked for, which environments of halvings have none of. Not
+// installed.
+#pragma once
+
+#include "check/checker.h"
+
+namespace acdf {
+
+/// Positions on the first two axes.
+struct TileBox {
+    std::uint32_t low[2], high[2];
+};
+
+/// The boxes of all tiles; `of` is null where there are none. Frees them.
+struct TileBoxes {
+    TileBox* of = nullptr;
+    bool given = false; ///< there is a TILE, right or wrong
+    bool fast = false;  ///< of the fast shape: roots are no offsets in TREE
+    Payload roots;      ///< the part of TILE that tells the roots of tiles
+
+    TileBoxes() = default;
+    TileBoxes(const TileBoxes&) = delete;
+    TileBoxes& operator=(const TileBoxes&) = delete;
+    ~TileBoxes();
+};
+
+/// All that lies beside DESC and META, but HALV; needs parts.description.
+void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Parts& parts) noexcept;
+
+/// TILE and ROWS; needs parts.description. Sets parts.tiles and what belongs to it, and `boxes`, if they are right.
+/// `fast`: there are no ROWS, and roots are no offsets in TREE (check_fast).
+void check_tiles(const Payload& tiles, const Payload& rows, bool fast, Report& report, Parts& parts,
+                 TileBoxes& boxes) noexcept;
+/// SUMS and GRID, which come beside TILE; needs what check_tiles sets. Sets parts.fast if they are right.
+void check_fast(const Payloads& payloads, const TileBoxes& boxes, Report& report, Parts& parts) noexcept;
+/// BINS and TREE; needs parts.description and, where there are tiles, those. Sets parts.bins, parts.tree.
+void check_tree(const Payload& bins, const Payload& tree, std::uint32_t kind, const TileBoxes& boxes,
+                Report& report, Parts& parts) noexcept;
+/// The same of local environments, and LOCL. Sets parts.local and parts.lights.
+void check_local_kind(const Payload& description, const Payload& local, const TileBoxes& boxes, Report& report,
+                      Parts& parts) noexcept;
+/// PLAC of a local environment; needs what check_local_kind sets. Sets parts.visibility if it is right.
+void check_visibility(const Payload& payload, Report& report, Parts& parts) noexcept;
+/// PORT of a local environment; needs what check_visibility sets. Sets parts.portals if it is right.
+void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept;
+/// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
+void check_brdf_kind(const Payload& description, const Payload& views, Report& report, Parts& parts) noexcept;
+/// The same of tables.
+void check_table_kind(const Payload& description, const Payload& bins, Report& report, const Parts& parts) noexcept;
+
+} // namespace acdf

@@ -1,0 +1,102 @@
+// The views of local environments, BRDFs and tables.
+#include "check/check.h"
+#include "opened_file.h"
+#include "tables/brdf.h"
+#include "tables/local.h"
+#include "tables/table_entries.h"
+
+#include <acdf/views.h>
+
+namespace acdf {
+namespace {
+
+using u32 = std::uint32_t;
+
+// What is made of a file of so many bytes: not more.
+std::size_t most_table_bytes(const AcdfFile& file) {
+    return 8 * static_cast<std::size_t>(file.size) + (std::size_t{1} << 20);
+}
+
+// Runtime tables are only for speed: where there is no memory for them, the file is as good without.
+template <class Tables>
+const Tables* keep(const Tables* tables, AcdfFile& file) {
+    if (tables) file.table_bytes = 4 * std::uint64_t{tables->words};
+    return tables;
+}
+
+void make_local(const Parts& parts, bool tables, AcdfFile& file) {
+    const AcdfDescription& description = *parts.description;
+    AcdfLocal& local = file.local;
+    // Its environment is complete, whatever the file is made for: it has no partner.
+    local.blend = file.blend;
+    local.environment.tree = parts.tree;
+    local.environment.columns = parts.axes[ACDF_AXIS_PHI].resolution;
+    local.environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
+    local.environment.total = description.total;
+    local.environment.parameterization = description.parameterization;
+    local.environment.tree_units = parts.tree_units;
+    local.partner = parts.partner;
+    local.bins = parts.bins;
+    local.bright_tiles = parts.bright_tiles;
+    local.bright_tile_count = parts.local->bright_tile_count;
+    local.cosine_share = static_cast<double>(parts.local->cosine_share);
+    local.visibility = parts.visibility;
+    local.portals = parts.portals;
+    local.fast = parts.fast;
+    if (description.axis_count == 3) { // an octahedron's 4 n^2 + 2 corners
+        while (4 * local.subdivisions * local.subdivisions + 2 < parts.axes[2].resolution) ++local.subdivisions;
+    } else {
+        local.rows = parts.axes[2].resolution;
+        local.columns = parts.axes[3].resolution;
+    }
+    if (tables && file.blend.tiles)
+        local.tables =
+            keep(make_local_tables(local, parts.tree_units, most_table_bytes(file), file.allocator, file.memory[2]),
+                 file);
+    if (local.fast.grid && local.tables) acdf_local_use_upper(&local);
+}
+
+void make_brdf(const Parts& parts, bool tables, AcdfFile& file) {
+    file.brdf = {file.blend,
+                 parts.tree,
+                 parts.bins,
+                 parts.views,
+                 parts.nodes,
+                 parts.axes[0].resolution,
+                 parts.axes[1].resolution,
+                 parts.description->total,
+                 nullptr};
+    if (tables && can_have_tables(file.brdf))
+        file.brdf.tables =
+            keep(make_brdf_tables(file.brdf, most_table_bytes(file), true, file.allocator, file.memory[2]), file);
+}
+
+void make_table(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) {
+    const u32 axes = parts.description->axis_count;
+    u32 indexed = 0;
+    while (parts.axes[indexed].role == ACDF_AXIS_INDEXED) ++indexed; // rule 5012: one axis at least is sampled
+    file.table = {parts.tree,    parts.bins,       parts.axes, axes, indexed, parts.description->total,
+                  parts.partner, parts.tree_units, nullptr};
+    if (survey)
+        file.table.entries = keep(make_table_entries(file.table, parts.description->bin_count, *survey,
+                                                     most_table_bytes(file), file.allocator, file.memory[2]),
+                                  file);
+}
+
+} // namespace
+
+void make_view(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) noexcept {
+    file.blend = {parts.tiles, parts.splits, parts.tile_roots, parts.rows, parts.tree};
+    file.fast = parts.fast;
+    if (file.kind() == ACDF_KIND_LOCAL) make_local(parts, survey != nullptr, file);
+    if (file.kind() == ACDF_KIND_BRDF) make_brdf(parts, survey != nullptr, file);
+    if (file.kind() == ACDF_KIND_TABLE) make_table(parts, survey, file);
+}
+
+LocalEnvironmentView File::local() const noexcept { return LocalEnvironmentView(opened_->local); }
+BrdfView File::brdf() const noexcept { return BrdfView(opened_->brdf); }
+TableView File::table() const noexcept { return TableView(opened_->table); }
+const AcdfBlend& File::blend() const noexcept { return opened_->blend; }
+const AcdfFast& File::fast() const noexcept { return opened_->fast; }
+
+} // namespace acdf

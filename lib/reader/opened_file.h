@@ -1,0 +1,51 @@
+// What an open file is, of the C++ interface and of that in C. Not installed.
+#pragma once
+
+#include <acdf/acdf.h>
+#include <acdf/reader.h>
+
+/// Plain data: views and the memory that they point into. The view of another kind than the file's is zeros.
+struct AcdfFile {
+    const std::uint8_t* bytes;
+    std::uint64_t size;
+    const AcdfDescription* description;
+    const AcdfAxis* axes;
+    const AcdfBin* bins; ///< null: none
+    const std::uint8_t* tree;
+    std::uint32_t tree_units;
+    const AcdfPartner* partner;
+    const std::uint8_t* metadata;
+    std::uint32_t metadata_count;
+    std::uint64_t table_bytes; ///< of the runtime tables
+    AcdfEnvironment environment;
+#ifndef ACDF_ENVIRONMENT_ONLY
+    AcdfBlend blend;
+    AcdfFast fast;
+    AcdfLocal local;
+    AcdfBrdf brdf;
+    AcdfTable table;
+#endif
+    AcdfAllocator allocator; ///< which gave what follows
+    AcdfBlock own;           ///< where this lies
+    AcdfBlock memory[3];     ///< the file's bytes; inflated chunks; runtime tables
+
+    AcdfKind kind() const { return static_cast<AcdfKind>(reinterpret_cast<const AcdfHeader*>(bytes)->kind); }
+};
+
+namespace acdf {
+
+struct Parts;
+class TreeSurvey;
+
+/// File::open and File::from_memory; null on failure. `status` is that of success before.
+AcdfFile* open_path(const char* path, const LoadOptions& options, Status& status) noexcept;
+AcdfFile* open_bytes(const void* data, std::size_t size, const LoadOptions& options, Status& status) noexcept;
+void close_file(AcdfFile* file) noexcept;
+
+#ifndef ACDF_ENVIRONMENT_ONLY
+/// The view of a kind that is not an environment, and its runtime tables, where `survey` is given: only where there
+/// is memory for them.
+void make_view(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) noexcept;
+#endif
+
+} // namespace acdf

@@ -1,0 +1,39 @@
+// Tables for shaders, of a loaded file.
+#include <acdf/shader/tables.h>
+
+#include "memory.h"
+#include "shader/tables/walk.h"
+
+#include <cstddef>
+#include <cstdio>
+#include <utility>
+
+namespace acdf {
+
+namespace {
+
+Status none(const char* why) {
+    Status status;
+    status.code = ErrorCode::unsupported;
+    std::snprintf(status.message, sizeof status.message, "no tables for shaders: %s", why);
+    return status;
+}
+
+} // namespace
+
+ShaderTables::~ShaderTables() { give_block({}, block_); }
+ShaderTables::ShaderTables(ShaderTables&& other) noexcept : block_(std::exchange(other.block_, AcdfBlock{})) {}
+ShaderTables& ShaderTables::operator=(ShaderTables&& other) noexcept {
+    std::swap(block_, other.block_);
+    return *this;
+}
+
+Status ShaderTables::make(const File& file, ShaderTables& out) noexcept {
+    out = ShaderTables();
+    if (file.kind() == ACDF_KIND_TABLE) return none("it is no environment, no local environment and no BRDF");
+    if (!acdf::make_walk(file, out.block_))
+        return none("its cells tilt (--fit pdf), too many share their curves, or memory is too little");
+    return {};
+}
+
+} // namespace acdf

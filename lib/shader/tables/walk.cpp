@@ -1,0 +1,315 @@
+// Writes down trees as splits and leaves for shaders (acdf/shader/tree.h).
+#include "shader/tables/walk.h"
+
+#include "memory.h"
+#include "shader/tables/walk_cells.h"
+#include "shader/tables/walk_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace acdf {
+
+namespace {
+
+using u32 = std::uint32_t;
+
+// What a file samples from, if it is one that can be walked.
+AcdfLocal local_of(const File& file) {
+    AcdfLocal local = {};
+    if (file.kind() == ACDF_KIND_LOCAL) return file.local().data();
+    if (file.kind() == ACDF_KIND_ENVIRONMENT) {
+        local.environment = file.environment().data();
+        return local;
+    }
+    const AcdfBrdf brdf = file.brdf().data();
+    local.environment.tree = brdf.tree;
+    local.environment.columns = brdf.columns;
+    local.environment.rows = brdf.rows;
+    local.environment.parameterization = ACDF_PARAM_HALF_ANGLE;
+    local.blend = brdf.blend;
+    local.bins = brdf.bins;
+    local.cosine_share = brdf.views->diffuse_share;
+    return local;
+}
+
+class WalkMaker {
+public:
+    explicit WalkMaker(const File& file)
+        : file_(file), local_(local_of(file)), environment_(local_.environment),
+          cells_(environment_.parameterization, environment_.columns, environment_.rows),
+          most_leaves_(2 * std::size_t{file.tree_units()} + 64 +
+                       (local_.blend.tiles ? local_.blend.tiles->tile_count : 0) +
+                       (environment_.halved ? environment_.halved->count : 0)) {}
+
+    bool make();
+    bool assemble(AcdfBlock& block) const;
+
+private:
+    // A curve, and the cell that it divides: probabilities are those of tile or tree.
+    struct Divided {
+        const std::uint8_t* tree;
+        u32 at;
+        Cell box;
+        u32 light;
+    };
+
+    bool brdf() const { return file_.kind() == ACDF_KIND_BRDF; }
+    u32 node(u32 axis, u32 position, u32 chance);
+    u32 tree(const std::uint8_t* tree, u32 root, const Cell& box, u32 light);
+    u32 halvings(u32 at, const AcdfSpan* steps, const Cell& box);
+    u32 environment();
+    u32 curve(const Divided& divided, const AcdfCurve& curve, u32 first, u32 last);
+    u32 splits(u32 node, const Cell& box);
+    u32 leaf(const Cell& cell, u32 light);
+    float unit() const;
+    bool bins();
+    bool views();
+
+    const File& file_;
+    AcdfLocal local_;
+    AcdfEnvironment environment_;
+    WalkCells cells_;
+    std::size_t most_leaves_, leaves_ = 0;
+    bool failed_ = false;
+    WalkParts parts_;
+    Growable<u32> bins_, views_, light_links_, tree_links_;
+    WalkTiles tiles_;
+    u32 root_ = ACDF_WALK_NONE, mixture_ = ACDF_WALK_NONE;
+};
+
+u32 WalkMaker::node(u32 axis, u32 position, u32 chance) {
+    const u32 at = parts_.add(WalkNode{axis << 31 | cells_.key(axis, position), 0, 0, chance});
+    failed_ = failed_ || parts_.failed();
+    return at;
+}
+
+u32 WalkMaker::leaf(const Cell& cell, u32 light) {
+    if (++leaves_ > most_leaves_ || cell.tilted) failed_ = true;
+    if (cell.dark || failed_) return ACDF_WALK_LEAF; // the first one
+    const u32 link = cells_.add(cell, light, parts_);
+    failed_ = parts_.failed();
+    return link;
+}
+
+u32 WalkMaker::tree(const std::uint8_t* tree, u32 root, const Cell& box, u32 light) {
+    const AcdfCurve whole = acdf_curve_at(tree, root);
+    return curve({tree, root, box, light}, whole, 0, whole.segments);
+}
+
+// A node of halvings, the box of it and the random numbers that lead there. A path passes at most 62 halvings.
+u32 WalkMaker::halvings(u32 at, const AcdfSpan* steps, const Cell& box) {
+    const AcdfHalving node = acdf_halvings_nodes(environment_.halved)[at];
+    const u32 axis = node.link & 7u, middle = (box.first[axis] + box.last[axis]) / 2;
+    const u32 wide[2] = {node.threshold - steps[axis].end[0], steps[axis].end[1] - node.threshold};
+    const u32 made = this->node(axis, middle, chance_of(wide[0], wide[1]));
+    u32 links[2] = {};
+    for (u32 upper = 0; upper < 2 && !failed_; ++upper) {
+        Cell part = box;
+        AcdfSpan part_steps[2] = {steps[0], steps[1]};
+        (upper ? part.first : part.last)[axis] = middle;
+        part_steps[axis].end[1 - upper] = node.threshold;
+        part.probability *= static_cast<double>(wide[upper]) / (wide[0] + wide[1]);
+        part.dark = wide[upper] == 0;
+        links[upper] = node.link >> (3 + upper) & 1u
+                           ? leaf(part, 0)
+                           : halvings(upper ? at + (node.link >> 5) : at + 1, part_steps, part);
+    }
+    if (failed_) return ACDF_WALK_LEAF;
+    parts_.nodes[made].lower = links[0];
+    parts_.nodes[made].upper = links[1];
+    return made;
+}
+
+u32 WalkMaker::environment() {
+    const AcdfHalvedTree* halved = environment_.halved;
+    const AcdfSpan steps[2] = {{{0, ACDF_STEPS}}, {{0, ACDF_STEPS}}};
+    if (!halved) return tree(environment_.tree, environment_.root, cells_.whole(), 0);
+    return halved->count ? halvings(0, steps, cells_.whole()) : leaf(cells_.whole(), 0);
+}
+
+// Segments [first, last) of a curve, which are halved. A path passes at most 64 curves.
+u32 WalkMaker::curve(const Divided& divided, const AcdfCurve& curve, u32 first, u32 last) {
+    const u32 axis = acdf_curve_axis(&curve), maximum = acdf_curve_maximum(&curve);
+    const u32 low = acdf_curve_cumulative(&curve, first), high = acdf_curve_cumulative(&curve, last);
+    if (failed_) return ACDF_WALK_LEAF;
+    if (low == high) { // dark, all of them
+        Cell dark = divided.box;
+        dark.dark = true;
+        return leaf(dark, divided.light);
+    }
+    if (first + 1 < last) {
+        const u32 middle = first + (last - first) / 2, border = acdf_curve_cumulative(&curve, middle);
+        AcdfRange range = {divided.box.first[axis], divided.box.last[axis], 0.0};
+        acdf_curve_narrow(&curve, middle, &range);
+        const u32 at = node(axis, range.low, chance_of(border - low, high - border));
+        const u32 lower = this->curve(divided, curve, first, middle),
+                  upper = this->curve(divided, curve, middle, last);
+        if (failed_) return ACDF_WALK_LEAF;
+        parts_.nodes[at].lower = lower;
+        parts_.nodes[at].upper = upper;
+        return at;
+    }
+    Divided part = divided;
+    AcdfRange range = {divided.box.first[axis], divided.box.last[axis], 0.0};
+    acdf_curve_narrow(&curve, first, &range);
+    part.box.first[axis] = range.low;
+    part.box.last[axis] = range.high;
+    part.box.tilted = part.box.tilted || range.tilt != 0.0;
+    part.box.probability *= static_cast<double>(high - low) / maximum;
+    const u32 link = acdf_curve_link(&curve, first);
+    if (link == 0) return leaf(part.box, part.light);
+    part.at += link;
+    const AcdfCurve child = acdf_curve_at(part.tree, part.at);
+    return this->curve(part, child, 0, child.segments);
+}
+
+// What rows share below a node of theirs. A path passes at most 48 splits.
+u32 WalkMaker::splits(u32 split, const Cell& box) {
+    const AcdfBlend& blend = local_.blend;
+    if (failed_) return ACDF_WALK_LEAF;
+    if (!(split & ACDF_TILE_FLAG)) {
+        const u32 axis = blend.splits[split].place & 7u, position = blend.splits[split].place >> 3;
+        Cell lower = box, upper = box;
+        lower.last[axis] = upper.first[axis] = position;
+        const u32 at = node(axis, position, ACDF_WALK_SPLIT | split);
+        const u32 below = splits(blend.splits[split].child[0], lower),
+                  above = splits(blend.splits[split].child[1], upper);
+        if (failed_) return ACDF_WALK_LEAF;
+        parts_.nodes[at].lower = below;
+        parts_.nodes[at].upper = above;
+        return at;
+    }
+    const u32 tile = split & ~ACDF_TILE_FLAG, root = blend.roots ? blend.roots[tile] : ACDF_NO_ROOT;
+    const u32 light = acdf_local_bright_tile_of(&local_, tile);
+    const u32 link = root == ACDF_NO_ROOT ? leaf(box, light) : tree(blend.tree, root, box, light);
+    if (light != 0 && light_links_.size() >= light) light_links_[light - 1] = link;
+    return link;
+}
+
+// A power of two that brings shares, which are only compared, to where the products of floats neither end nor
+// begin.
+float WalkMaker::unit() const {
+    if (!local_.blend.tiles) return 1.0f;
+    float most = 0.0f;
+    for (u32 i = 0; i < file_.description().bin_count; ++i) most = std::max(most, local_.bins[i].share);
+    for (u32 i = 0; i < local_.bright_tile_count; ++i) most = std::max(most, local_.bright_tiles[i].share);
+    return most > 0.0f ? static_cast<float>(std::ldexp(1.0, -std::max(std::ilogb(most), -126))) : 1.0f;
+}
+
+bool WalkMaker::bins() {
+    const u32 count = file_.description().bin_count;
+    const bool trees = !local_.blend.tiles;
+    const float scale = unit();
+    const u32* const links = trees ? tree_links_.add(file_.tree_units(), ACDF_WALK_NONE) : nullptr;
+    if (trees && !links) return false;
+    for (u32 i = 0; i < count && !failed_; ++i) {
+        const AcdfBin& bin = local_.bins[i];
+        const bool sampled = bin.root != ACDF_NO_ROOT && (bin.share > 0.0f || brdf());
+        if (trees && sampled && tree_links_[bin.root] == ACDF_WALK_NONE) // several may have the same
+            tree_links_[bin.root] = tree(environment_.tree, bin.root, cells_.whole(), 0);
+        bins_.add(trees && sampled ? tree_links_[bin.root] : bin.root);
+        bins_.add(acdf_float_bits(bin.share * scale));
+    }
+    return !(failed_ || bins_.failed());
+}
+
+// Coordinates of the stored elevations, and what is needed to be exact between them (acdf/shader/brdf.h).
+bool WalkMaker::views() {
+    const AcdfBrdf brdf = file_.brdf().data();
+    const u32 count = brdf.views->theta_count;
+    for (u32 i = 0; i < count; ++i) {
+        const double x = double{brdf.nodes[i]}, square = x * x;
+        const double next = i + 1 < count ? double{brdf.nodes[i + 1]} - x : 1.0;
+        views_.add(acdf_float_bits(brdf.nodes[i]));
+        views_.add(float_bits(square));
+        views_.add(float_bits(square - double{static_cast<float>(square)}));
+        views_.add(float_bits(std::min(1.0 / next, 3e38)));
+    }
+    return !views_.failed();
+}
+
+bool WalkMaker::make() {
+    parts_.add(WalkLeaf{0, 0.0f, {}}); // what is dark
+    if (!cells_.remember(most_leaves_)) return false;
+    if (local_.bright_tile_count > 0 && !light_links_.add(local_.bright_tile_count, ACDF_WALK_LEAF)) return false;
+    if (!brdf()) root_ = environment();
+    if (local_.fast.grid) {
+        mixture_ = ACDF_WALK_ON_GRIDS;
+        for (u32 i = 0; i < local_.bright_tile_count; ++i) light_links_[i] = local_.bright_tiles[i].tile;
+        failed_ = !tiles_.make(local_) || failed_;
+    } else if (local_.blend.tiles && !failed_) mixture_ = splits(acdf_blend_root(&local_.blend), cells_.whole());
+    if (failed_ || (brdf() && !views())) return false;
+    return file_.kind() == ACDF_KIND_ENVIRONMENT || bins();
+}
+
+bool WalkMaker::assemble(AcdfBlock& block) const {
+    const AcdfTiles* const tiles = local_.blend.tiles;
+    const bool coded = tiles && !local_.fast.grid;
+    const std::size_t stride = coded ? tiles->tile_count - 1 : 0, rows = coded ? stride * tiles->row_count : 0;
+    const std::size_t codes = coded ? 512 : 0, bright_tiles = 8 * std::size_t{local_.bright_tile_count};
+    const std::size_t words = ACDF_WALK_HEADER_WORDS +
+                              (parts_.nodes.bytes() + parts_.leaves.bytes() + bins_.bytes() + views_.bytes()) / 4 +
+                              codes + bright_tiles + rows / 4 + 1 + tiles_.words();
+    if (rows > 0xFFFFFFFFu || words > 0x3FFFFFFFu) return false;
+    block = take_block({}, 4 * words);
+    if (!block.data) return false;
+    u32* const out = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
+    const float scale = unit();
+    std::size_t at = ACDF_WALK_HEADER_WORDS + (local_.fast.grid ? WalkTiles::header_words : 0);
+    const auto place = [&](u32 header, const void* from, std::size_t bytes) { // where there is none, its place is 0
+        if (bytes == 0) return;
+        out[header] = static_cast<u32>(at);
+        std::memcpy(out + at, from, bytes);
+        at += (bytes + 3) / 4;
+    };
+    out[ACDF_WALK_SIZE] = static_cast<u32>(words);
+    out[ACDF_WALK_OCTAHEDRAL] = cells_.octahedral();
+    out[ACDF_WALK_ENVIRONMENT] = root_;
+    out[ACDF_WALK_MIXTURE] = mixture_;
+    out[ACDF_WALK_SUBDIVISIONS] = local_.subdivisions;
+    out[ACDF_WALK_COLUMNS] = local_.columns;
+    out[ACDF_WALK_ROWS] = local_.rows;
+    out[ACDF_WALK_BIN_COUNT] = brdf() ? 0 : static_cast<u32>(bins_.size() / 2);
+    out[ACDF_WALK_STRIDE] = static_cast<u32>(stride);
+    out[ACDF_WALK_BRIGHT_TILE_COUNT] = local_.bright_tile_count;
+    out[ACDF_WALK_COSINE] = float_bits(local_.cosine_share);
+    out[ACDF_WALK_FAST] = local_.fast.grid != nullptr;
+    if (brdf()) {
+        const AcdfViews& views = *file_.brdf().data().views; // in the file
+        out[ACDF_WALK_VIEW_COUNT] = views.theta_count;
+        out[ACDF_WALK_AZIMUTHS] = views.phi_count;
+        out[ACDF_WALK_MIRRORED] = (views.flags & ACDF_VIEWS_MIRRORED) != 0;
+    }
+    place(ACDF_WALK_VIEWS, views_.data(), views_.bytes());
+    place(ACDF_WALK_NODES, parts_.nodes.data(), parts_.nodes.bytes());
+    place(ACDF_WALK_LEAVES, parts_.leaves.data(), parts_.leaves.bytes());
+    place(ACDF_WALK_BINS, bins_.data(), bins_.bytes());
+    if (codes > 0) out[ACDF_WALK_CODES] = static_cast<u32>(at);
+    for (std::size_t i = 0; i < codes / 2; ++i) {
+        out[at++] = float_bits(tiles->codebook[i] / 65535.0);
+        out[at++] = float_bits((65535.0 - tiles->codebook[i]) / 65535.0);
+    }
+    if (bright_tiles > 0) out[ACDF_WALK_BRIGHT_TILES] = static_cast<u32>(at);
+    for (u32 i = 0; i < local_.bright_tile_count; ++i) {
+        const AcdfBrightTile& light = local_.bright_tiles[i];
+        for (int k = 0; k < 3; ++k) out[at + static_cast<std::size_t>(k)] = acdf_float_bits(light.direction[k]);
+        out[at + 3] = acdf_float_bits(light.radius);
+        out[at + 4] = acdf_float_bits(light.share * scale);
+        out[at + 5] = light_links_[i];
+        at += 8;
+    }
+    place(ACDF_WALK_CODE_ROWS, local_.blend.rows, rows);
+    if (local_.fast.grid) tiles_.place(local_, out, at);
+    return true;
+}
+
+} // namespace
+
+bool make_walk(const File& file, AcdfBlock& block) noexcept {
+    WalkMaker maker(file);
+    return maker.make() && maker.assemble(block);
+}
+
+} // namespace acdf

@@ -1,0 +1,15 @@
+// Makes the words of acdf/shader/walk.h and acdf/shader/brdf.h.
+#pragma once
+
+#include <acdf/allocator.h>
+#include <acdf/reader.h>
+#include <acdf/views.h>
+
+namespace acdf {
+
+/// The words of an environment, a local environment or a BRDF, in `block`, which the caller gives back. False where
+/// there are none: for cells that tilt, for curves that so many share that the cells are more than the file has
+/// bytes, for rows of 4 GiB, and where memory fails.
+bool make_walk(const File& file, AcdfBlock& block) noexcept;
+
+} // namespace acdf
