@@ -5,6 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -132,11 +133,14 @@ void frames(benchmark::State& state, const Case& of, const Region& region) {
     Control control;
     control.threads = of.threads;
     fail(rebuilder.rebuild(pixels, control));
+    const std::clock_t processor = std::clock();
+    const auto clock = std::chrono::steady_clock::now();
     for ([[maybe_unused]] auto _ : state)
         fail(region.width ? rebuilder.update(pixels, region, control) : rebuilder.rebuild(pixels, control));
-    // 1 / (seconds of a table / seconds of a frame)
-    state.counters["to_table"] = benchmark::Counter(
-        table_seconds(of.columns), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    const double seconds = of.threads == 1
+                               ? double(std::clock() - processor) / CLOCKS_PER_SEC
+                               : std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    state.counters["to_table"] = seconds / double(state.iterations()) / table_seconds(of.columns);
     state.counters["variance"] = rebuilder.relative_variance();
     state.counters["to_best"] = rebuilder.relative_variance() / best_variance(of);
 }
