@@ -24,9 +24,10 @@ enum class Instructions : int { none = 0, avx2 = 1, avx512 = 2 };
 class LocalBatch {
 public:
     LocalBatch() noexcept = default;
-    /// Uses the best instructions that the processor has, up to `most`. Some files do without
-    /// them: those without runtime tables, with a share of the cosine, with bins on a lat-long grid or of more than
-    /// 32 subdivisions. There samples at several normals wait for memory together, at most.
+    /// Uses the best instructions that the processor has, up to `most`. The loop, without vector
+    /// instructions, serves files without runtime tables, with a share of the cosine, with bins on a lat-long grid
+    /// or of more than 32 subdivisions. The gain with such files is, at most, that samples at several normals wait
+    /// for memory together.
     explicit LocalBatch(const LocalEnvironmentView& view, Instructions most = Instructions::avx512) noexcept;
 
     /// LocalEnvironmentView::sample of normals[i] and u[i] into out[i], i < count.
