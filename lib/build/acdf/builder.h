@@ -336,7 +336,9 @@ struct BrdfOptions {
     Channels channels;
     Goal goal; ///< of the variance fit; cells: that views share, or of each, up to ACDF_MAX_TILES
     AcdfFit fit = ACDF_FIT_VARIANCE;
-    bool sharing = true; ///< variance: views share cells and are interpolated; else the nearest tree serves
+    /// Of the variance fit: views share cells and are interpolated. Else each view has a tree, and the nearest
+    /// serves.
+    bool sharing = true;
     /// Stored views, 2 to 1024 in theta_o, and 1 or 4 to 1024 in phi_o; 0: as suits the size.
     std::uint32_t theta_views = 0, phi_views = 0;
     std::uint32_t phi_segments = 10, theta_segments = 30; ///< cdf, pdf, uniform: of curves over phi_h and theta_h
