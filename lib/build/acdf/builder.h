@@ -124,8 +124,8 @@ enum class Domain {
     octahedral ///< u and v of the equal-area octahedral square
 };
 
-/// What an interpolated lookup finds beyond the first and the last row of a lat-long map, and beyond the sides of a
-/// disc: the border itself, or, as textures that repeat have it, the opposite one.
+/// The texels of an interpolated lookup beyond the first and last row of a lat-long map, or beyond the sides of a
+/// disc. They are those of the border itself, or, as textures that repeat have it, of the opposite one.
 enum class Wrap { clamp, repeat };
 
 /// What is fitted of a map.
@@ -170,12 +170,12 @@ private:
     std::shared_ptr<const Data> data_;
 };
 
-/// What a file is to be combined with, by multiple importance sampling. Such a file has no density where the
+/// What a file is to be combined with, by multiple importance sampling. Such a file has pdf 0 where the
 /// partner is enough: it is not to be used alone, and says so (requires_mis of its view).
 struct Partner {
-    /// ACDF_PARTNER_COSINE: cos / pi around the normal; _BRDF: lobes as BRDFs have them; _MEAN: as if the partner
-    /// were the same everywhere (Karlik et al. 2019), of environments alone; _TABLE: another table, of tables
-    /// alone.
+    /// ACDF_PARTNER_COSINE: cos / pi around the normal. ACDF_PARTNER_BRDF: lobes as BRDFs have them.
+    /// ACDF_PARTNER_MEAN: as if the partner were the same everywhere (Karlik et al. 2019), of environments alone.
+    /// ACDF_PARTNER_TABLE: another table, of tables alone.
     AcdfPartnerKind kind = ACDF_PARTNER_NONE;
     AcdfHeuristic heuristic = ACDF_HEURISTIC_BALANCE;
     double light = 1.0, other = 1.0; ///< samples of the file and of the partner, in proportion; in [1e-3, 1e3]
@@ -207,7 +207,7 @@ struct Environment {
     Order order = Order::best; ///< the axis that was split first, where that was tried or asked for
 };
 
-/// An environment map: a density over the sphere (acdf::EnvironmentView).
+/// An environment map: a pdf over the sphere (acdf::EnvironmentView).
 Status environment(const Target& target, const EnvironmentOptions& options, Environment& result,
                    const Control& control = {}) noexcept;
 Status environment(const Pixels& pixels, const EnvironmentOptions& options, Environment& result,
@@ -223,12 +223,13 @@ enum class BinTarget {
 
 /// How bins that share tiles are stored.
 enum class LocalShape {
-    small, ///< least noise for its bytes
-    fast, ///< grids in tiles and sums in rows, which are searched by vectors: samples and densities take 0.6 of the
-          ///< time
-    automatic ///< both are made: fast where its variance and its size are at most 1.15 times those of small, for
-              ///< then it has no more noise after the same time (of those that reach a variance: where it is no
-              ///< larger); small where that fails, or options ask for what fast has not
+    small,    ///< least noise for its bytes
+    fast,     ///< grids in tiles and sums in rows, which are searched by vectors: samples and pdfs take 0.6 of the
+              ///< time
+    automatic ///< Both are made. Fast is taken where its variance and its size are at most 1.15 times those of
+              ///< small: then it has no more noise after the same time. Where the goal is a variance, fast is
+              ///< taken where its file is no larger. Small is taken else, and where options ask for what fast
+              ///< lacks.
 };
 
 /// A point of a scene where light is gathered: on a surface, or in the air.
@@ -242,16 +243,16 @@ struct Portal {
     float corner[3] = {}, across[3] = {1.0f, 0.0f, 0.0f}, up[3] = {0.0f, 1.0f, 0.0f};
 };
 
-/// What of the light reaches which place of a scene. Both callbacks are called by several threads at once, and tell
-/// the same for the same arguments: the file is then the same for any number of threads. A point must not lie on
-/// what hides light from it, but a little above.
+/// Which of the light reaches which position of a scene. Both callbacks are called by several threads at once, and
+/// return the same for the same arguments: the file is then the same for any number of threads. A point must not
+/// lie on what hides light from it, but a little above.
 struct Visibility {
     /// Point `index` of an endless sequence all over the scene, any of which is about as even; false where that
     /// number has none.
     std::function<bool(std::uint64_t index, VisibilityPoint& point)> point;
     /// Whether anything lies on the ray from a point towards a direction, in the frame of directions.
     std::function<bool(const VisibilityPoint& point, const float direction[3])> occluded;
-    /// From the scene's coordinates, in which a renderer tells positions, to those of points here, a row a
+    /// From the scene's coordinates, in which a renderer gives positions, to those of points here, a row a
     /// coordinate: x' = t[0] x + t[1] y + t[2] z + t[3].
     float transform[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
     /// Windows and doors that light comes through, at most 8: samples are taken through them, exactly, and by the
@@ -278,7 +279,7 @@ struct LocalOptions {
     Partner mis;                            ///< of bins that share tiles, without a cosine_share
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;
-    std::string normals_text; ///< what fit.options tells of `normals`; empty: that there are some
+    std::string normals_text; ///< what fit.options stores of `normals`; empty: that there are some
     Visibility visibility;    ///< both callbacks: bins share tiles, the goal is a budget, and visibility cells take
                               ///< more than half of it
 };
@@ -292,7 +293,7 @@ struct Local {
     BadTexels bad_texels;                 ///< what was mended
 };
 
-/// A local environment map: a density for every normal (acdf::LocalEnvironmentView).
+/// A local environment map: a pdf for every normal (acdf::LocalEnvironmentView).
 Status local(const Target& target, const LocalOptions& options, Local& result,
              const Control& control = {}) noexcept;
 Status local(const Pixels& pixels, const LocalOptions& options, Local& result,
@@ -309,7 +310,7 @@ struct Brdf {
     /// always be the same.
     std::function<void(const double wo[3], const double wi[3], double rgb[3])> evaluate;
     bool isotropic = true; ///< rho depends on the difference of azimuths alone: views are stored for theta_o only
-    bool mirrored = true;  ///< and not on its sign: half of each density. Neither is checked; false is always right
+    bool mirrored = true;  ///< and not on its sign: half of each pdf. Neither is checked; false is always right
     /// Where `mirrored` holds but for noise, as of measurements: the mean difference of both sides over their mean,
     /// for one. Unless it is 0, accuracy is summed over both sides.
     double asymmetry = 0.0;
@@ -335,7 +336,9 @@ struct BrdfOptions {
     Channels channels;
     Goal goal; ///< of the variance fit; cells: that views share, or of each, up to ACDF_MAX_TILES
     AcdfFit fit = ACDF_FIT_VARIANCE;
-    bool sharing = true; ///< variance: views share cells and are interpolated; else each has a tree, nearest serves
+    /// Of the variance fit: views share cells and are interpolated. Else each view has a tree, and the nearest
+    /// serves.
+    bool sharing = true;
     /// Stored views, 2 to 1024 in theta_o, and 1 or 4 to 1024 in phi_o; 0: as suits the size.
     std::uint32_t theta_views = 0, phi_views = 0;
     std::uint32_t phi_segments = 10, theta_segments = 30; ///< cdf, pdf, uniform: of curves over phi_h and theta_h
@@ -354,7 +357,7 @@ struct BrdfFile {
     std::uint32_t theta_views = 0, phi_views = 0;
 };
 
-/// A BRDF: a density over wi for every wo (acdf::BrdfView).
+/// A BRDF: a pdf over wi for every wo (acdf::BrdfView).
 Status brdf(const Brdf& brdf, const BrdfOptions& options, BrdfFile& result, const Control& control = {}) noexcept;
 
 // ---- tables ----
@@ -377,7 +380,7 @@ struct TableOptions {
     double max_weight = 0.0;                       ///< the largest f/p over its mean, at least 1; 0: no bound
     bool bad_as_zero = false;                      ///< bad numbers count as 0, else ErrorCode::bad_source
     Partner mis;                                   ///< ACDF_PARTNER_TABLE, without max_weight or a goal of variance
-    Array other;                                   ///< that table, of the same shape; each bin has its own density
+    Array other;                                   ///< that table, of the same shape; each bin has its own pdf
     Source other_source;                           ///< name and sha256
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source; ///< name and sha256
@@ -391,11 +394,12 @@ struct Table {
     BadNumbers bad;     ///< taken as 0
 };
 
-/// A table: a density over its sampled axes for every bin (acdf::TableView). Each number is the value of a function
+/// A table: a pdf over its sampled axes for every bin (acdf::TableView). Each number is the value of a function
 /// that is constant on its box of the grid; numbers that float32 does not hold are scaled by a power of two.
 Status table(const Array& array, const TableOptions& options, Table& result, const Control& control = {}) noexcept;
 
-/// What a file's `fit.options` will tell: with source and version it tells the bytes. Empty where memory is short.
+/// What a file's `fit.options` will store: with source and version it determines the bytes. Empty where memory is
+/// short.
 std::string option_text(const EnvironmentOptions& options) noexcept;
 std::string option_text(const LocalOptions& options) noexcept;
 std::string option_text(const BrdfOptions& options) noexcept;

@@ -11,7 +11,7 @@ enum class ErrorCode : int {
     invalid_argument = 1, ///< an option is out of its range, or contradicts another one or the input
     bad_source = 2,       ///< the input holds what cannot be built from: NaN that is to be refused, ...
     no_energy = 3,        ///< the input is black, or reflects nothing: there is nothing to sample
-    out_of_reach = 4,     ///< no file reaches the goal; the message tells what can be had
+    out_of_reach = 4,     ///< no file reaches the goal; the message reports what can be had
     cancelled = 5,        ///< Control::progress returned false
     out_of_memory = 6,
     callback_failed = 7, ///< a callback threw, or Rows::read returned false
@@ -28,8 +28,8 @@ struct Status {
 };
 
 /// Called with the share that is done, in [0, 1] and never less than before, and what is being done ("fitting").
-/// false cancels: the call that is being served returns ErrorCode::cancelled soon, and leaves nothing running. By
-/// one thread at a time, not always the same one.
+/// Returning false cancels: the call that is being served returns ErrorCode::cancelled soon, and leaves nothing
+/// running. By one thread at a time, not always the same one.
 using Progress = std::function<bool(double share, const char* what)>;
 
 /// How a call works; what it makes does not depend on it.

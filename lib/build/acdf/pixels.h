@@ -21,10 +21,11 @@ enum class Projection {
     octahedral,       ///< P. Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008; square
 };
 
-/// Linear radiance that the caller holds, rows from the top, in the projection's own order of texels (lat-long: row
-/// 0 touches +z, column 0 begins at phi = +pi and phi falls). Strides are in bytes, of any sign; 0: channels next
-/// to each other, pixels `channels` numbers apart, rows `width` pixels apart. Numbers need not be aligned, and may
-/// not overlap. At most 2^30 pixels and 2^16 on a side. TargetOptions::domain says what is resampled.
+/// Linear radiance that the caller holds, rows from the top, in the projection's own order of texels. Row 0 of a
+/// lat-long map touches +z, column 0 begins at phi = +pi and phi falls. Strides are in bytes, of any sign; 0:
+/// channels next to each other, pixels `channels` numbers apart, rows `width` pixels apart. Numbers need not be
+/// aligned, and may not overlap. At most 2^30 pixels and 2^16 on a side. TargetOptions::domain says what is
+/// resampled.
 struct Pixels {
     const void* data = nullptr; ///< the first channel of the top left pixel
     std::uint32_t width = 0, height = 0;
@@ -34,8 +35,8 @@ struct Pixels {
     Projection projection = Projection::latlong;
 };
 
-/// A lat-long map whose rows are asked for when they are needed: memory is that of the target, 4 bytes a texel for
-/// one channel and nearest lookup, and a band of rows; on another grid than its own the whole map.
+/// A lat-long map whose rows are asked for when they are needed. Memory is that of the target and a band of rows: 4
+/// bytes a texel for one channel and nearest lookup. On another grid than its own it is that of the whole map.
 struct Rows {
     std::uint32_t width = 0, height = 0;
     /// Fills `rgb` (count x width x 3) with rows first to first + count - 1. Called by one thread, from the top to
@@ -43,7 +44,7 @@ struct Rows {
     std::function<bool(std::uint32_t first, std::uint32_t count, float* rgb)> read;
 };
 
-/// What becomes of NaN, infinite and negative values. None of them ever reaches a density.
+/// What becomes of NaN, infinite and negative values. None of them ever reaches a pdf.
 enum class BadTexelPolicy {
     zero, ///< all are 0
     /// +infinity is the largest finite value of its channel, of half floats 65504, at which they end; the others

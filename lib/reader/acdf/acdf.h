@@ -1,5 +1,5 @@
-/* The C interface of the reader: open a file here, then sample and evaluate with acdf/sample.h, local.h, brdf.h and
- * table.h, which are inlined, or with acdf/linked.h, which languages without a C compiler can call.
+/* The C interface of the reader: open a file here, then sample and evaluate with inline functions or linked ones.
+ * acdf/sample.h, local.h, brdf.h and table.h are inlined. Languages without a C compiler can call acdf/linked.h.
  *
  *   AcdfError error;
  *   AcdfFile* file = acdf_open("probe.acdf", &error);
@@ -55,12 +55,13 @@ typedef struct AcdfError {
 /* Reads and checks the file at `path`. Null on failure. `error` may be null; it is written on success too. */
 AcdfFile* acdf_open(const char* path, AcdfError* error);
 
-/* Checks `size` bytes at `data`, which must stay as they are until acdf_close: they are used in place, unless they
- * are not aligned to 8 bytes (then copied); compressed chunks are inflated into memory of the file's own. Null on
+/* Checks `size` bytes at `data`, which must stay as they are until acdf_close. They are used in place where they
+ * are aligned to 8 bytes, and copied else. Compressed chunks are inflated into memory of the file's own. Null on
  * failure. */
 AcdfFile* acdf_from_memory(const void* data, size_t size, AcdfError* error);
 
-/* The same without runtime tables: nothing is allocated for them, and trees are walked. */
+/* The same without runtime tables: nothing is allocated for them, and each call searches the trees from their
+ * roots. */
 AcdfFile* acdf_open_plain(const char* path, AcdfError* error);
 AcdfFile* acdf_from_memory_plain(const void* data, size_t size, AcdfError* error);
 

@@ -3,10 +3,10 @@
  * CUDA/HIP/SYCL, with the same contract: plain views into a checked file, no allocation, no errors (SPEC.md §6.8).
  *
  * Frame: the surface's own, z is its normal, x its tangent. wo and wi are unit vectors that point away from the
- * surface. Densities are per steradian of wi. A half-vector may reflect wo below the surface: wi is returned as it
- * is, with its density; the caller sees wi[2] <= 0 and counts the sample as 0.
+ * surface. Pdfs are per steradian of wi. A half-vector may reflect wo below the surface: wi is returned as it
+ * is, with its pdf; the caller sees wi[2] <= 0 and counts the sample as 0.
  *
- * The density between stored views is the mixture of those around it, weighted by interpolation and by how much
+ * The pdf between stored views is the mixture of those around it, weighted by interpolation and by how much
  * each reflects. */
 #ifndef ACDF_BRDF_H
 #define ACDF_BRDF_H
@@ -25,7 +25,7 @@ ACDF_FN void acdf_brdf_whole(const AcdfBrdf* brdf, AcdfRange range[2]) {
     range[0].tilt = range[1].tilt = 0.0;
 }
 
-/* Finds the cell of a place; `strata` may be null. Returns its probability, 0 where no sample can fall. */
+/* Finds the cell of a position; `strata` may be null. Returns its probability, 0 where no sample can fall. */
 ACDF_FN double acdf_brdf_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfBrdfPosition* place,
                               AcdfRange range[2], AcdfStratum* strata) {
     uint32_t square[2];
@@ -42,7 +42,7 @@ ACDF_FN double acdf_brdf_fraction(const AcdfRange* range, double position) {
     return acdf_clamp((position - (double)range->low) / (double)(range->high - range->low), 0.0, 1.0);
 }
 
-/* Density of wi: that of its place in a cell of probability p (0: none), and the cosine's share. */
+/* The pdf of wi: that of its position in a cell of probability p (0: none), and the cosine's share. */
 ACDF_FN float acdf_brdf_cell_pdf(const AcdfBrdf* brdf, double p, const AcdfRange range[2],
                                  const AcdfBrdfPosition* place, const float wi[3]) {
     const double floor = (double)brdf->views->diffuse_share;
@@ -71,8 +71,8 @@ ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view,
     return acdf_brdf_cell_pdf(brdf, p, range, &place, wi);
 }
 
-/* Density per steradian with which acdf_brdf_sample samples wi for wo. 0 where none falls, for wo below the surface
- * and for directions that are NaN or not of unit length. */
+/* The pdf, per steradian, with which acdf_brdf_sample samples wi for wo. 0 where none falls, for wo below the
+ * surface and for directions that are NaN or not of unit length. */
 ACDF_FN float acdf_brdf_pdf(const AcdfBrdf* brdf, const float wo[3], const float wi[3]) {
     AcdfBrdfView view;
     if (brdf->tables && brdf->tables->grid)
@@ -87,8 +87,8 @@ ACDF_FN double acdf_brdf_albedo(const AcdfBrdf* brdf, const float wo[3]) {
     return acdf_brdf_view(brdf, wo, &view) ? acdf_clamp(view.albedo, 0.0, 0x1.fffffffffffffp1023) : 0.0;
 }
 
-/* Prepares the random numbers for the walk: u, and on which side of the mirror wi will lie. Returns 0 where there
- * is none to do: *out is the sample. */
+/* Prepares the random numbers for the traversal: u, and on which side of the mirror wi will lie. Returns 0 where no
+ * traversal is needed: *out is the sample. */
 ACDF_FN int acdf_brdf_begin(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0, double u1, double u[2],
                             double* sign, AcdfDirectionSample* out) {
     const double floor = (double)brdf->views->diffuse_share;
@@ -156,7 +156,7 @@ ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfVi
     return out;
 }
 
-/* acdf_brdf_view_sample by a walk. */
+/* acdf_brdf_view_sample by a traversal from the root. */
 ACDF_FN AcdfDirectionSample acdf_brdf_view_walk(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0,
                                                 double u1) {
     AcdfDirectionSample out;
@@ -189,7 +189,7 @@ ACDF_FN AcdfDirectionSample acdf_brdf_view_about(const AcdfBrdf* brdf, const Acd
     return acdf_brdf_view_sample(brdf, view, u0, u1);
 }
 
-/* acdf_brdf_sample by a walk. */
+/* acdf_brdf_sample by a traversal from the root. */
 ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_brdf_walk(const AcdfBrdf* brdf, const float wo[3], double u0,
                                                        double u1) {
     const AcdfDirectionSample nothing = {{0.0f, 0.0f, 0.0f}, 0.0f};
@@ -210,9 +210,9 @@ ACDF_FN AcdfDirectionSample acdf_brdf_sample(const AcdfBrdf* brdf, const float w
     return acdf_brdf_walk(brdf, wo, u0, u1);
 }
 
-/* Moves a place in a cell to the half-vector that reflects wo into the direction of wi, if that is in the cell,
- * too: wi is taken to be as long as wo, since floats of unit length hardly are, and what they are longer by turns
- * the half-vector of nearly opposite ones. */
+/* Moves a position in a cell to the half-vector that reflects wo into the direction of wi, if the cell holds that
+ * half-vector. The direction wi is taken to be as long as wo, since vectors of floats have unit length but for
+ * rounding. A difference of their lengths would turn the half-vector where wo and wi are nearly opposite. */
 ACDF_FN void acdf_brdf_refine(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfRange range[2],
                               const float wi[3], double position[2], double* sign) {
     const double nothing[2] = {0.0, 0.0};
@@ -256,11 +256,11 @@ ACDF_FN int acdf_brdf_stays(const AcdfBrdf* brdf, const AcdfBrdfView* view, cons
 }
 
 /* The random numbers u[2] for which acdf_brdf_sample returns wi for wo, through the half-vector. Returns 1, or 0
- * (and u unset) where the table's density is 0. The sample lies in the cell that acdf_brdf_pdf finds, and is wi but
- * for rounding: a coordinate is off by 2^-23 at most, and for wi nearer to a border of the cell than samples come
- * by 2^-19 / |wo + wi| + 2^-29 / sin(theta_h), in cells that are wider. Samples that rounding would carry over a
- * border are moved into their cell, by an eighth of it or more: of those other numbers come back than they were
- * sampled by, which sample them as well. */
+ * (and u unset) where the table's pdf is 0. The sample lies in the cell that acdf_brdf_pdf finds, and is wi but for
+ * rounding: a coordinate is off by 2^-23 at most. Where wi is nearer to a border of the cell than samples come, it
+ * is off by 2^-19 / |wo + wi| + 2^-29 / sin(theta_h), in cells that are wider. The function acdf_brdf_sample moves
+ * samples that rounding would carry over a border into their cell, by an eighth of it or more. For those, u may
+ * differ from the numbers that sampled them, and samples them as well. */
 ACDF_FN int acdf_brdf_invert(const AcdfBrdf* brdf, const float wo[3], const float wi[3], double u[2]) {
     const double floor = (double)brdf->views->diffuse_share;
     AcdfBrdfView view;

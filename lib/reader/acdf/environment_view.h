@@ -18,23 +18,23 @@ public:
     ACDF_METHOD explicit EnvironmentView(const AcdfEnvironment& data) noexcept : data_(data) {}
     ACDF_METHOD bool empty() const noexcept { return data_.columns == 0; }
 
-    /// Draws a direction; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite, > 0.
+    /// Samples a direction; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite, > 0.
     ACDF_INLINE_METHOD DirectionSample sample(double u0, double u1) const noexcept {
         return acdf_environment_sample(&data_, u0, u1);
     }
-    /// Density in sr^-1 of a unit direction; 0 where none falls, for NaN and for non-unit directions.
+    /// The pdf in sr^-1 of a unit direction; 0 where none falls, for NaN and for non-unit directions.
     ACDF_INLINE_METHOD float pdf(const float direction[3]) const noexcept {
         return acdf_environment_pdf(&data_, direction);
     }
-    /// The random numbers that draw `direction`; false where the density is 0.
+    /// The random numbers that sample `direction`; false where the pdf is 0.
     ACDF_METHOD bool invert(const float direction[3], double u[2]) const noexcept {
         return acdf_environment_invert(&data_, direction, u) != 0;
     }
     /// Integral of the sampled function over the sphere (luminance times sr): for light selection.
     ACDF_METHOD double total() const noexcept { return data_.total; }
-    /// Whether the density is 0 where another sampler is to cover the light: used alone it is biased.
+    /// Whether the pdf is 0 where another sampler is to cover the light: used alone it is biased.
     ACDF_METHOD bool requires_mis() const noexcept { return data_.partner != nullptr; }
-    /// Of the samples of both, in (0, 1]: how many to draw from this view; 1 where it is to be used alone.
+    /// Of the samples of both, in (0, 1]: how many to take from this view; 1 where it is to be used alone.
     ACDF_METHOD float recommended_light_share() const noexcept { return acdf_partner_share(data_.partner); }
     /// The plain data, for acdf/sample.h in another language or on a GPU.
     ACDF_METHOD const AcdfEnvironment& data() const noexcept { return data_; }

@@ -2,8 +2,8 @@
  * times the cosine (Lawrence et al. 2005, §7.1). One freestanding header over acdf/blend.h,
  * valid C99, C++17 and CUDA/HIP/SYCL, with the same contract.
  *
- * Frame and densities are those of acdf/sample.h. Normals need not be of unit length; a normal that is zero or NaN
- * gets density 0. A normal whose bins are not stored is served by the environment's own table: unbiased, noisier.
+ * Frame and pdfs are those of acdf/sample.h. Normals need not be of unit length; a normal that is zero or NaN
+ * gets pdf 0. A normal whose bins are not stored is served by the environment's own table: unbiased, noisier.
  */
 #ifndef ACDF_LOCAL_H
 #define ACDF_LOCAL_H
@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-/* A tile of the mixture: by the walk of the normal alone or of normal and place. */
+/* Samples a tile of the mixture: by the traversal for the normal alone, or for normal and position. */
 ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                         AcdfRange* range, double* probability) {
     if (point->visibility.count > 0)
@@ -90,7 +90,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_direction_sample(const AcdfLocal* loc
     return out;
 }
 
-/* A direction around the normal with density cos / pi: the unit normal plus a point of the unit sphere. */
+/* A direction around the normal with pdf cos / pi: the unit normal plus a point of the unit sphere. */
 ACDF_FN void acdf_cosine_direction(const float normal[3], double u0, double u1, float direction[3]) {
     const double nx = normal[0], ny = normal[1], nz = normal[2], length = sqrt(nx * nx + ny * ny + nz * nz);
     /* Cosine to the normal, kept above what rounding to float could take below the horizon, and sine. */
@@ -120,7 +120,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     return acdf_local_direction_sample(local, point, &grid, range, u, p);
 }
 
-/* Samples by the row of a place or through its windows, of which there are some. The density is that of the
+/* Samples by the row of a position or through its portals, of which it sees at least one. The pdf is that of the
  * direction as it was rounded. */
 ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_portal_sample(const AcdfLocal* local,
                                                                  const AcdfLocalPoint* point, double* u) {
@@ -168,8 +168,8 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_fast_sample_at(const AcdfLoca
     return acdf_local_only_fast_sample(local, point, 1, u0, u1);
 }
 
-/* Samples a direction; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
- * no direction) where the normal is not valid or nothing shines on it. */
+/* Samples a direction; u0 (phi) and u1 (theta) in [0, 1]. Values outside are clamped, NaN counts as 0. The pdf is
+ * in sr^-1; it is 0, and the direction is unset, where the normal is not valid or nothing shines on it. */
 ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const AcdfLocalPoint* point, double u0,
                                                  double u1) {
     return acdf_local_only_fast(local, point) ? acdf_local_fast_sample_at(local, point, u0, u1)
@@ -201,14 +201,14 @@ ACDF_FN AcdfDirectionSample acdf_local_sample(const AcdfLocal* local, const floa
                                              : acdf_local_any_new_sample(local, normal, u0, u1);
 }
 
-/* Integral of the light above the horizon times the cosine, interpolated between bins; where those of the normal
- * are not stored that of all light; 0 for normals that are not valid. */
+/* Integral of the light above the horizon times the cosine (luminance times sr), interpolated between bins. Where
+ * the bins of the normal are not stored, the integral of all light; 0 for normals that are not valid. */
 ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[3]) {
     AcdfNormalBins bins;
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
     if (point.what >= ACDF_LOCAL_BLEND && acdf_partner_records(local->partner) &&
-        acdf_local_bins(local, normal, &bins)) { /* shares tell what is left to the file */
+        acdf_local_bins(local, normal, &bins)) { /* shares hold the light that is left to the file */
         const AcdfPartnerRecord* records = acdf_partner_records(local->partner);
         double sum = 0.0;
         int i;

@@ -1,4 +1,4 @@
-/* Views of an open file whose memory was copied to another place: a GPU, another process, an archive of the
+/* Views of an open file whose memory was copied elsewhere: to a GPU, another process, an archive of the
  * caller's. Freestanding, valid C99 and C++17.
  *
  *   AcdfMove moves[ACDF_MAX_MOVES];

@@ -55,8 +55,8 @@ ACDF_FN2(AcdfVector, acdf_square_direction, ACDF_F32, across, ACDF_F32, along) {
     return d;
 }
 
-/* Where the square shows a direction of nearly unit length that is not a pole, by 1 - 2 u (`slope`) and 2 v - 1
- * (`cap`), and keys, u and v in steps of 2^-24; sin2 and length2 as of acdf_direction_keys. */
+/* The position in the square of a direction of nearly unit length that is not a pole: 1 - 2 u (`slope`) and
+ * 2 v - 1 (`cap`). Keys are u and v in steps of 2^-24; sin2 and length2 are those of acdf_direction_keys. */
 ACDF_FN5(AcdfDirectionKeys, acdf_square_keys, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z, ACDF_F32, sin2, ACDF_F32,
          length2) {
     ACDF_LET(ACDF_F32, r) = ACDF_SQRT(acdf_cap_of(z, sin2, length2));

@@ -1,8 +1,8 @@
 /* Files that are not to be used alone: made to be combined, by multiple importance sampling, with another sampler
  * that covers what they leave out (SPEC.md §5.8). Freestanding, valid C99, C++17 and CUDA/HIP/SYCL.
  *
- * Their density may be 0 where there is light: a renderer samples from both, weighs by both densities, and asks
- * such a file which share of the samples to take from it. */
+ * Their pdf may be 0 where there is light: a renderer samples from both, and weighs by both pdfs. Such a file
+ * stores which share of the samples to take from it. */
 #ifndef ACDF_PARTNER_H
 #define ACDF_PARTNER_H
 

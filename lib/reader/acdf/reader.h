@@ -8,11 +8,11 @@
 //   float p = sky.pdf(s.direction);
 //
 // Safety: `open` and `from_memory` accept any bytes. They check every rule of format/SPEC.md that memory
-// safety and a correct density need, in time linear in the size, and never read outside what they are given.
+// safety and a correct pdf need, in time linear in the size, and never read outside what they are given.
 // A file that was accepted can be sampled for ever without reading outside it. Memory: at most four times the
 // file and its inflated chunks, and 1 MiB; the limits are checked before any of it is allocated. Runtime tables
-// take at most eight times the file and 1 MiB more, and as much again while they are made, of environments and
-// tables in blocks of 6 MiB that are touched as far as they are needed; LoadOptions leaves them out.
+// take at most eight times the file and 1 MiB more, and as much again while they are made. Those of environments
+// and tables lie in blocks of 6 MiB that are touched as far as they are needed. LoadOptions leaves them out.
 #pragma once
 
 #include <acdf/allocator.h>
@@ -71,8 +71,8 @@ struct LoadOptions {
     LoadOptions(const Limits& limits) noexcept : limits(limits) {}
 
     Limits limits;
-    /// Whether runtime tables are made: samples and densities take a fraction of the time. Without them nothing
-    /// more is allocated, and the file's own trees are walked.
+    /// Whether runtime tables are made: samples and pdfs take a fraction of the time. Without them nothing
+    /// more is allocated, and each call searches the file's own trees from their roots.
     bool tables = true;
     /// Where the memory comes from that an open file keeps; by default the C library. It must stay usable until the
     /// file is gone. What is needed for a moment, while bytes are checked, is the C library's, but for the nodes of

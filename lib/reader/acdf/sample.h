@@ -5,10 +5,10 @@
  * is checked here). Functions are pure: no allocation, no globals, no errors. To call them in a GPU kernel
  * define ACDF_FN before including, for example `#define ACDF_FN static inline __host__ __device__`.
  *
- * The trade-off: a table as large as the image is sampled in one lookup per axis but misses the cache at every
- * step; an adaptive tree takes a few comparisons and stays in the cache.
+ * The trade-off: a table as large as the image takes one lookup per axis but misses the cache at every step. An
+ * adaptive tree takes a few comparisons and stays in the cache.
  *
- * Frame: right-handed, z up. theta is measured from +z, phi from +x towards +y. Densities are per
+ * Frame: right-handed, z up. theta is measured from +z, phi from +x towards +y. Pdfs are per
  * steradian. docs/conventions.md maps this frame to that of other programs. */
 #ifndef ACDF_SAMPLE_H
 #define ACDF_SAMPLE_H
@@ -26,7 +26,7 @@
 extern "C" {
 #endif
 
-/* A density over the sphere in a checked file: a tree of halvings, or one of curves. */
+/* A pdf over the sphere in a checked file: a tree of halvings, or one of curves. */
 typedef struct AcdfEnvironment {
     const uint8_t* tree; /* chunk TREE: curves, of the fits `uniform`, `cdf` and `pdf`; null: halvings */
     uint32_t root;

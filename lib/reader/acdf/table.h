@@ -1,12 +1,12 @@
-/* Sampling and evaluating .acdf tables of any number of axes: one freestanding header over acdf/sample.h, valid
+/* Sampling and evaluating .acdf tables of any number of axes. One freestanding header over acdf/sample.h, valid
  * C99, C++17 and CUDA/HIP/SYCL, with the same contract: plain views into a checked file, no allocation, no errors.
  *
  * The first `indexed_count` axes are chosen by the caller: one index each, in [0, resolution), which together name
- * a bin. The others are sampled: a point x with one coordinate a sampled axis, in the units of the axis. Densities
+ * a bin. The others are sampled: a point x with one coordinate a sampled axis, in the units of the axis. Pdfs
  * are per product of those units, and integrate to 1 within each bin that has any energy.
  *
  * Coordinates are double because an axis may have more steps than a float has values. A sample keeps clear of its
- * cell's borders, so that acdf_table_pdf finds the same cell: it returns the very same density. */
+ * cell's borders, so that acdf_table_pdf finds the same cell: it returns the very same pdf. */
 #ifndef ACDF_TABLE_H
 #define ACDF_TABLE_H
 
@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-/* A density over the sampled axes for each bin of the indexed ones, in a checked file. */
+/* A pdf over the sampled axes for each bin of the indexed ones, in a checked file. */
 typedef struct AcdfTable {
     const uint8_t* tree;        /* chunk TREE */
     const AcdfBin* bins;        /* row-major over the indexed axes, the last one fastest */
@@ -27,7 +27,7 @@ typedef struct AcdfTable {
     double total;               /* sum over the bins of the integral over the sampled axes */
     const AcdfPartner* partner; /* null: to be used alone */
     uint32_t tree_units;        /* of two bytes, that the tree has; 0: not known */
-    const AcdfEntries* entries; /* runtime tables; null: trees are walked from their roots */
+    const AcdfEntries* entries; /* runtime tables; null: each call searches trees from their roots */
 } AcdfTable;
 
 /* Where a point falls. */
@@ -56,7 +56,7 @@ ACDF_FN const AcdfBin* acdf_table_bin(const AcdfTable* table, const uint32_t* in
     return table->bins[bin].share > 0.0f ? &table->bins[bin] : 0;
 }
 
-/* Whether double coordinates tell the axis's steps apart (SPEC.md rule 9004). */
+/* Whether double coordinates resolve the axis's steps (SPEC.md rule 9004). */
 ACDF_FN int acdf_table_axis_steps(const AcdfAxis* axis) {
     const double low = fabs(axis->low), high = fabs(axis->high), largest = low > high ? low : high;
     const double step = fabs(axis->high - axis->low) / (double)axis->resolution;
@@ -100,8 +100,8 @@ ACDF_FN void acdf_table_whole(const AcdfTable* table, AcdfRange* range) {
     }
 }
 
-/* Density of a place in a cell of probability p: the same for acdf_table_sample and acdf_table_pdf, bit for bit,
- * because both come here with the same cell and the same position. */
+/* The pdf of a position in a cell of probability p. Both acdf_table_sample and acdf_table_pdf return the same
+ * value, bit for bit, because both call it with the same cell and the same position. */
 ACDF_FN double acdf_table_cell_pdf(const AcdfTable* table, double p, const AcdfTablePosition* place) {
     uint32_t axis;
     for (axis = table->indexed_count; axis < table->axis_count; ++axis) {
@@ -113,7 +113,7 @@ ACDF_FN double acdf_table_cell_pdf(const AcdfTable* table, double p, const AcdfT
     return acdf_clamp(p, ACDF_DOUBLE_MIN, ACDF_DOUBLE_MAX);
 }
 
-/* The grids of a bin; null where its tree is walked from the root. */
+/* The grids of a bin; null where its tree is searched from the root. */
 ACDF_INLINE const AcdfEntryBin* acdf_table_entries(const AcdfTable* table, const AcdfBin* bin) {
     const AcdfEntryBin* entries;
     if (!table->entries) return 0;
@@ -144,7 +144,7 @@ ACDF_INLINE double acdf_table_entry_sample(const AcdfTable* table, const AcdfEnt
 }
 
 /* Samples a point. index[indexed_count] as in acdf_table_bin; u[sampled count] in [0, 1], clamped, NaN counts as 0.
- * Fills x[sampled count], monotone in each u within a segment, and returns the density there, finite and > 0.
+ * Fills x[sampled count], monotone in each u within a segment, and returns the pdf there, finite and > 0.
  * Returns 0, and leaves x as it is, where there is nothing to sample. */
 ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, const double* u, double* x) {
     const AcdfBin* bin = acdf_table_bin(table, index);
@@ -218,7 +218,7 @@ ACDF_INLINE double acdf_table_entry_pdf(const AcdfTable* table, const AcdfEntryB
     return p > 0.0 ? acdf_table_cell_pdf(table, p, &place) : 0.0;
 }
 
-/* Density with which acdf_table_sample samples x in the bin of `index`; 0 where none falls. */
+/* The pdf with which acdf_table_sample samples x in the bin of `index`; 0 where no sample falls. */
 ACDF_FN double acdf_table_pdf(const AcdfTable* table, const uint32_t* index, const double* x) {
     const AcdfBin* bin = acdf_table_bin(table, index);
     const AcdfEntryBin* grids = bin ? acdf_table_entries(table, bin) : 0;
@@ -230,7 +230,7 @@ ACDF_FN double acdf_table_pdf(const AcdfTable* table, const uint32_t* index, con
 }
 
 /* The random numbers u[sampled count] for which acdf_table_sample returns x. Returns 1, or 0 (and u unset) where
- * the density is 0. */
+ * the pdf is 0. */
 ACDF_FN int acdf_table_invert(const AcdfTable* table, const uint32_t* index, const double* x, double* u) {
     AcdfTablePosition place;
     AcdfStratum strata[ACDF_MAX_AXES];

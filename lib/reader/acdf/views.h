@@ -1,4 +1,4 @@
-// What a renderer holds of an open file: a density over directions or points, a few words by value. C++17,
+// What a renderer holds of an open file: a pdf over directions or points, a few words by value. C++17,
 // freestanding over acdf/sample.h, local.h, brdf.h and table.h. For kernels define ACDF_FN and ACDF_METHOD, for
 // example as `static inline __host__ __device__` and __host__ __device__.
 //
@@ -24,13 +24,13 @@ public:
     ACDF_METHOD explicit LocalEnvironmentView(const AcdfLocal& data) noexcept : data_(data) {}
     ACDF_METHOD bool empty() const noexcept { return data_.environment.columns == 0; }
 
-    /// Draws a direction for a normal; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite and > 0; 0
-    /// where the normal is zero or NaN or no light can reach it. A direction may lie below the horizon: it counts
-    /// as 0.
+    /// Samples a direction for a normal; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite and > 0.
+    /// It is 0 where the normal is zero or NaN or no light can reach it. A direction may lie below the horizon: it
+    /// counts as 0.
     ACDF_METHOD DirectionSample sample(const float normal[3], double u0, double u1) const noexcept {
         return acdf_local_sample(&data_, normal, u0, u1);
     }
-    /// Density in sr^-1 of a unit direction for a normal; exactly that of `sample` for what it returned, but for
+    /// The pdf in sr^-1 of a unit direction for a normal; exactly that of `sample` for what it returned, but for
     /// rounding where cells are tilted (`--fit pdf`; SPEC.md §6.10).
     ACDF_METHOD float pdf(const float normal[3], const float direction[3]) const noexcept {
         return acdf_local_pdf(&data_, normal, direction);
@@ -41,10 +41,10 @@ public:
         acdf_local_at(&data_, normal, &point);
         return point;
     }
-    /// The same for a point of the scene that the file was made for, `position` in the scene's own coordinates:
-    /// only light that reaches it is drawn, but for a small share. Outside of the scene's bounds, and of files that
-    /// do not store visibility cells, that of the normal alone. Where the scene is another one than it was,
-    /// sampling stays unbiased, and is noisier.
+    /// The same for a point of the scene that the file was made for, `position` in the scene's own coordinates.
+    /// Samples go towards light that reaches it, but for a small share. Outside of the scene's bounds, and of files
+    /// that do not store visibility cells, the normal alone counts. Where the scene has changed since, sampling
+    /// stays unbiased, and is noisier.
     ACDF_METHOD AcdfLocalPoint at(const float position[3], const float normal[3]) const noexcept {
         AcdfLocalPoint point;
         acdf_local_at_position(&data_, position, normal, &point);
@@ -52,7 +52,8 @@ public:
     }
     /// Whether there are visibility cells.
     ACDF_METHOD bool has_visibility() const noexcept { return data_.visibility.header != nullptr; }
-    /// Whether windows are known that light comes through: they are drawn where a position sees them.
+    /// Whether the file stores portals that light comes through: samples go through them where a position sees
+    /// them.
     ACDF_METHOD bool has_portals() const noexcept { return data_.portals.header != nullptr; }
     ACDF_METHOD DirectionSample sample(const AcdfLocalPoint& point, double u0, double u1) const noexcept {
         return acdf_local_sample_at(&data_, &point, u0, u1);
@@ -60,23 +61,23 @@ public:
     ACDF_METHOD float pdf(const AcdfLocalPoint& point, const float direction[3]) const noexcept {
         return acdf_local_pdf_at(&data_, &point, direction);
     }
-    /// Integral of the light above the horizon times the cosine (luminance times sr), about: where bins share tiles
-    /// the root mean square of an estimate from their samples, interpolated, which is more by a few per cent or by
-    /// as much as the samples are noisy; else that of the bin. For light selection. Where a normal's bins are not
-    /// stored, that of all light, which is more; 0 for a normal that is zero or NaN.
+    /// Integral of the light above the horizon times the cosine (luminance times sr), about: for light selection.
+    /// Where bins share tiles, it is the root mean square of an estimate from their samples, interpolated. That is
+    /// more by a few per cent or by as much as the samples are noisy. Else it is the integral of the bin. Where a
+    /// normal's bins are not stored, that of all light, which is more; 0 for a normal that is zero or NaN.
     ACDF_METHOD double irradiance(const float normal[3]) const noexcept {
         return acdf_local_irradiance(&data_, normal);
     }
-    /// Whether densities are 0 where another sampler is to cover the light: used alone they are biased.
+    /// Whether pdfs are 0 where another sampler is to cover the light: used alone they are biased.
     ACDF_METHOD bool requires_mis() const noexcept { return data_.partner != nullptr; }
-    /// Of the samples of both at a normal, in (0, 1]: how many to draw from this view; 1 where it is to be used
+    /// Of the samples of both at a normal, in (0, 1]: how many to take from this view; 1 where it is to be used
     /// alone.
     ACDF_METHOD float recommended_light_share(const float normal[3]) const noexcept {
         return acdf_local_recommended_share(&data_, normal);
     }
-    /// Whether a normal has a density of its own; else it is served by that of the whole environment.
+    /// Whether a normal has a pdf of its own; else it is served by that of the whole environment.
     ACDF_METHOD bool stored(const float normal[3]) const noexcept { return acdf_local_stored(&data_, normal) != 0; }
-    /// The density of the whole environment, whatever the normal.
+    /// The pdf of the whole environment, whatever the normal.
     ACDF_METHOD EnvironmentView environment() const noexcept { return EnvironmentView(data_.environment); }
     /// The plain data, for acdf/local.h in another language or on a GPU.
     ACDF_METHOD const AcdfLocal& data() const noexcept { return data_; }
@@ -95,17 +96,18 @@ public:
     ACDF_METHOD explicit BrdfView(const AcdfBrdf& data) noexcept : data_(data) {}
     ACDF_METHOD bool empty() const noexcept { return data_.columns == 0; }
 
-    /// Draws wi for wo; u0 (azimuth of the half-vector) and u1 (its elevation) in [0, 1]. pdf in sr^-1 of wi,
-    /// finite and > 0; 0 where wo is not a unit vector above the surface. wi may lie below it: it counts as 0.
+    /// Samples wi for wo; u0 (azimuth of the half-vector) and u1 (its elevation) in [0, 1]. pdf in sr^-1 of wi,
+    /// finite and > 0. It is 0 where wo is not a unit vector above the surface. wi may lie below it: it counts as
+    /// 0.
     ACDF_METHOD DirectionSample sample(const float wo[3], double u0, double u1) const noexcept {
         return acdf_brdf_sample(&data_, wo, u0, u1);
     }
-    /// Density in sr^-1 of wi for wo; exactly that of `sample` for what it returned, but where wo and wi are so
-    /// nearly opposite that their half-vector is lost in rounding.
+    /// The pdf in sr^-1 of wi for wo. For a result of `sample` it is exactly the pdf there, but where wo and wi are
+    /// so nearly opposite that their half-vector is lost in rounding.
     ACDF_METHOD float pdf(const float wo[3], const float wi[3]) const noexcept {
         return acdf_brdf_pdf(&data_, wo, wi);
     }
-    /// The random numbers that draw wi for wo, but for rounding (acdf_brdf_invert); false where the table's density
+    /// The random numbers that sample wi for wo, but for rounding (acdf_brdf_invert); false where the table's pdf
     /// is 0.
     ACDF_METHOD bool invert(const float wo[3], const float wi[3], double u[2]) const noexcept {
         return acdf_brdf_invert(&data_, wo, wi, u) != 0;
@@ -130,7 +132,7 @@ public:
     ACDF_METHOD explicit TableView(const AcdfTable& data) noexcept : data_(data) {}
     ACDF_METHOD bool empty() const noexcept { return data_.axis_count == 0; }
 
-    /// How many axes are chosen by `index`, and how many are drawn.
+    /// How many axes are chosen by `index`, and how many are sampled.
     ACDF_METHOD std::uint32_t indexed_count() const noexcept { return data_.indexed_count; }
     ACDF_METHOD std::uint32_t sampled_count() const noexcept { return acdf_table_sampled_count(&data_); }
     /// Sampled axis i: its name, range and steps.
@@ -138,25 +140,25 @@ public:
         return data_.axes[data_.indexed_count + i];
     }
 
-    /// Draws x, in the units of the axes; u in [0, 1]. Returns the density there, per product of those units,
+    /// Samples x, in the units of the axes; u in [0, 1]. Returns the pdf there, per product of those units,
     /// finite and > 0; 0 (and x unset) where the bin has no energy or an index is out of range.
     ACDF_METHOD double sample(const std::uint32_t* index, const double* u, double* x) const noexcept {
         return acdf_table_sample(&data_, index, u, x);
     }
-    /// Density of x; exactly that of `sample` for what it returned. 0 where none falls, outside the axes' ranges
+    /// The pdf of x; exactly that of `sample` for what it returned. 0 where none falls, outside the axes' ranges
     /// and for NaN.
     ACDF_METHOD double pdf(const std::uint32_t* index, const double* x) const noexcept {
         return acdf_table_pdf(&data_, index, x);
     }
-    /// The random numbers that draw x; false where the density is 0.
+    /// The random numbers that sample x; false where the pdf is 0.
     ACDF_METHOD bool invert(const std::uint32_t* index, const double* x, double* u) const noexcept {
         return acdf_table_invert(&data_, index, x, u) != 0;
     }
     /// Sum over the bins of the integral of the table over its sampled axes.
     ACDF_METHOD double total() const noexcept { return data_.total; }
-    /// Whether densities are 0 where another sampler is to cover the table: used alone they are biased.
+    /// Whether pdfs are 0 where another sampler is to cover the table: used alone they are biased.
     ACDF_METHOD bool requires_mis() const noexcept { return data_.partner != nullptr; }
-    /// Of the samples of both in a bin, in (0, 1]: how many to draw from this view; 1 where it is to be used alone,
+    /// Of the samples of both in a bin, in (0, 1]: how many to take from this view. 1 where it is to be used alone,
     /// or an index is out of range.
     ACDF_METHOD float recommended_light_share(const std::uint32_t* index) const noexcept {
         const AcdfBin* bin = acdf_table_bin(&data_, index);

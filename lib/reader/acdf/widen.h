@@ -17,8 +17,8 @@ ACDF_FN uint32_t acdf_reverse24(uint32_t k) {
     return (k << 16 | k >> 16) >> 8;
 }
 
-/* For random numbers of 24 bits, which is all that floats in [0, 1) hold: u[i] becomes a double in the same step of
- * 2^-24, whose lower bits are the other number's in reverse order. All 2^48 pairs then lead to different
+/* Widens random numbers of 24 bits, which is all that floats in [0, 1) hold. Each u[i] becomes a double in the same
+ * step of 2^-24; its lower bits are the other number's in reverse order. All 2^48 pairs then lead to different
  * directions, and a cell that only one step of one axis leads to is met as often as it should be. Within a step
  * nothing else changes: strata and sequences stay what they are. Numbers that are finer than a step keep their own
  * bits. */

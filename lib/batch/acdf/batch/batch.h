@@ -18,15 +18,16 @@ struct BatchTable;
 /// What instructions serve; with `none` it is the loop over BrdfView.
 enum class Instructions : int { none = 0, avx2 = 1, avx512 = 2 };
 
-/// The directions and densities of a LocalEnvironmentView, bit for bit in a fraction of the
+/// The directions and pdfs of a LocalEnvironmentView, bit for bit in a fraction of the
 /// time. A few words by value, no memory of its own; valid while the File lives. All functions are const,
 /// thread-safe, allocate and throw nothing.
 class LocalBatch {
 public:
     LocalBatch() noexcept = default;
-    /// Uses the best instructions that the processor has, up to `most`. Served without are files without runtime
-    /// tables, with a share of the cosine, with bins on a lat-long grid or of more than 32 subdivisions: there
-    /// draws at several normals wait for memory together, at most.
+    /// Uses the best instructions that the processor has, up to `most`. The loop, without vector
+    /// instructions, serves files without runtime tables, with a share of the cosine, with bins on a lat-long grid
+    /// or of more than 32 subdivisions. The gain with such files is, at most, that samples at several normals wait
+    /// for memory together.
     explicit LocalBatch(const LocalEnvironmentView& view, Instructions most = Instructions::avx512) noexcept;
 
     /// LocalEnvironmentView::sample of normals[i] and u[i] into out[i], i < count.
@@ -49,7 +50,7 @@ private:
     Instructions instructions_ = Instructions::none;
 };
 
-/// The directions and densities of a BrdfView, bit for bit, in a fraction of the time. Valid while its File lives.
+/// The directions and pdfs of a BrdfView, bit for bit, in a fraction of the time. Valid while its File lives.
 /// `prepare` allocates; all else is const, thread-safe, allocates and throws nothing.
 class BrdfBatch {
 public:
@@ -58,11 +59,11 @@ public:
     BrdfBatch& operator=(BrdfBatch&& other) noexcept;
     ~BrdfBatch();
 
-    /// Makes tables: 4 bytes a cell and view, and some more a cell, which is about four times the file; twelve
-    /// times where the file was opened without runtime tables, or has none. Uses the best instructions that the
-    /// processor has, up to `most`. Served by the loop, without tables, are files that are not isotropic, have a
-    /// diffuse floor or trees of their own for each bin, or whose views share so few rows that tables would be out
-    /// of proportion to the file. Fails where memory does; `out` then stays what it was.
+    /// Makes tables: 4 bytes a cell and view, and some more a cell. That is about four times the file; twelve times
+    /// where the file was opened without runtime tables, or has none. Uses the best instructions that the processor
+    /// has, up to `most`. The loop, without tables, serves files that are not isotropic, or that have a diffuse
+    /// floor or trees of their own for each bin. It also serves files whose views share so few rows that tables
+    /// would be out of proportion to the file. Fails where memory does; `out` then stays what it was.
     static Status prepare(const BrdfView& view, BrdfBatch& out, Instructions most = Instructions::avx512) noexcept;
 
     /// BrdfView::sample of wo[i] and u[i] into out[i], i < count.

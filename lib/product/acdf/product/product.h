@@ -1,5 +1,5 @@
 // Sampling directions of light from the product of light, cosine and BRDF at a shading point, with their exact
-// density. C++17, header only, freestanding over acdf/product/cut_sample.h and acdf/brdf.h: no allocation, no
+// pdf. C++17, header only, freestanding over acdf/product/cut_sample.h and acdf/brdf.h: no allocation, no
 // exceptions, no errors. For kernels define ACDF_METHOD, for example as __host__ __device__.
 //
 //   acdf::ProductSampler sampler(local.data(), acdf::BrdfLobe(brdf.data()));   // of a LocalEnvironmentView, a
@@ -9,13 +9,14 @@
 //   sampler.sample(point, 16, u, out);                      // the same to the bit, several at once: in less time
 //   sampler.pdf(point, 16, directions, out);                // by ProductOptions::vectors in less still
 //
-// The tiles of the local file are a hierarchy whose nodes know the light times cosine in them (Lawrence et al.
-// 2005, §7.1). `at` divides those nodes in which light times BRDF is large until a number of parts is reached,
-// looking at the BRDF once a division, where the new part is lit most, and at a few samples of the BRDF's own
-// sampler. Within a part directions follow light and cosine. What is left, lobes that are narrower than a part, is
-// for the BRDF's own sampler: it gets a share of the samples, which grows with the differences between neighbouring
-// parts and falls with those of the light within the lobe, and the parts get what it does not give already. The
-// density is that of the mixture.
+// The tiles of the local file are a hierarchy whose nodes store the light times cosine in them (Lawrence et al.
+// 2005, §7.1). `at` divides those nodes in which light times BRDF is large until a number of sub-regions is
+// reached. It evaluates the BRDF once a division, where the new sub-region is lit most, and at a few samples of the
+// BRDF's own sampler. Within a sub-region directions follow light and cosine.
+//
+// The BRDF's own sampler covers lobes that are narrower than a sub-region. It gets a share of the samples, which
+// grows with the differences between neighbouring sub-regions and falls with those of the light within the lobe.
+// The sub-regions get what it does not give already. The pdf is that of the mixture.
 #pragma once
 
 #include <acdf/product/cut_batch.h>
@@ -38,7 +39,7 @@ template <class LobePoint>
 struct ProductPoint {
     SurfaceFrame frame;
     AcdfLocalPoint light; ///< what serves the normal
-    union {               // empty where the light's own density is used as it is, or not at all
+    union {               // empty where the light's own pdf is used as it is, or not at all
         AcdfCut cut;
         AcdfFastCut fast; ///< of bright tiles of the fast shape
     };
@@ -47,7 +48,7 @@ struct ProductPoint {
 };
 
 /// Made of the light, of a local environment file or of an environment file, and a lobe. Samples from bright tiles
-/// that shared tiles describe follow the product; all others mix those of the light's own density and of the BRDF's
+/// that shared tiles describe follow the product; all others mix those of the light's own pdf and of the BRDF's
 /// half and half. Holds views: valid while their files live. All functions are const, thread-safe, allocate and
 /// throw nothing.
 template <class AnyLobe>
@@ -83,7 +84,7 @@ public:
     /// times.
     ACDF_METHOD void sample(const Point& point, std::size_t count, const double (*u)[2],
                             ProductSample* out) const noexcept;
-    /// Density in sr^-1 of a unit direction; exactly that of `sample` for what it returned. Positive wherever that
+    /// The pdf in sr^-1 of a unit direction; exactly that of `sample` for what it returned. Positive wherever that
     /// of the lobe's own sampler is.
     ACDF_METHOD float pdf(const Point& point, const float direction[3]) const noexcept;
     /// The same of directions[i] into out[i], i < count, to the bit: in less time, as for samples of bright tiles.

@@ -1,5 +1,5 @@
 /* Product sampling (acdf/product/product.h) from C: light times cosine times BRDF at a shading point, with its
- * exact density. Linked, not inline. Nothing is allocated; all functions are thread-safe.
+ * exact pdf. Linked, not inline. Nothing is allocated; all functions are thread-safe.
  *
  *   AcdfProductPoint point;
  *   acdf_product_at(&local, &brdf, 64, frame, wo, &point);
@@ -27,14 +27,14 @@ typedef union AcdfProductPoint {
  * and normal, three unit vectors; wo: towards the viewer; both in the frame of directions. */
 void acdf_product_at(const AcdfLocal* light, const AcdfBrdf* brdf, int parts, const float frame[9],
                      const float wo[3], AcdfProductPoint* point);
-/* Samples a direction with the light and BRDF that the point was made with; u0 and u1 in [0, 1]. pdf in sr^-1; 0
- * where nothing is sampled: it counts as 0, as do directions below the surface. */
+/* Samples a direction with the light and BRDF that the point was made with; u0 and u1 in [0, 1]. The pdf is
+ * in sr^-1; it is 0 where nothing is sampled: the sample counts as 0, as do directions below the surface. */
 AcdfDirectionSample acdf_product_sample(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point,
                                         double u0, double u1);
 /* The same of u[i] into out[i], i < count, to the bit: in less time where a point is sampled from several times. */
 void acdf_product_samples(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point, size_t count,
                           const double (*u)[2], AcdfDirectionSample* out);
-/* Density in sr^-1 of a unit direction; exactly that of the sample for what it returned. */
+/* The pdf in sr^-1 of a unit direction; exactly that of the sample for what it returned. */
 float acdf_product_pdf(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point,
                        const float direction[3]);
 /* The same of directions[i] into out[i], i < count, to the bit. */

@@ -1,12 +1,12 @@
 /* Samples and pdfs of BRDF files for shaders, as acdf/brdf.h says (SPEC.md 6.8), in floats, over the words that
  * acdf::ShaderTables::make_walk (acdf/shader/tables.h) makes. One text for processors and for shaders of every
- * language (acdf/dialect.h), in which acdf/shader/walk.h stands, too: a shader has bright tiles and surfaces.
+ * language (acdf/dialect.h), as `acdf/shader/walk.h` is: a shader has both bright tiles and surfaces.
  *
- * Trees (acdf/shader/tree.h) divide the square of half-vectors, and leaves are its cells. A sample has the density
- * that its direction has at its own place in the cell, as the reader's has.
+ * Trees (acdf/shader/tree.h) divide the square of half-vectors, and leaves are its cells. A sample has the pdf
+ * of its direction's own position in the cell, as the reader's has.
  *
- * Densities are the reader's but for the rounding of floats, below 1e-5 of them and 1e-6 of them over the cosine of
- * the half-vector to wo: what rounding the two directions changes is more. */
+ * Pdfs are the reader's but for the rounding of floats: below 1e-5 of them, and 1e-6 of them over the cosine of the
+ * half-vector to wo. Rounding of the two directions changes more. */
 #ifndef ACDF_SHADER_BRDF_H
 #define ACDF_SHADER_BRDF_H
 
@@ -18,7 +18,7 @@ extern "C" {
 
 /* ---- leaves of half-vectors ------------------------------------------------------------------------- */
 
-/* Words of a leaf: 0; density in its tile or tree over |wo + wi| / |wo . (wo + wi)|; of each axis low, width, the
+/* Words of a leaf: 0; pdf in its tile or tree over |wo + wi| / |wo . (wo + wi)|; of each axis low, width, the
  * first key, and how many. Axes are the azimuth (from -pi up, or that of the upper half where the file is mirrored)
  * and 1 - cos(theta), both as parts of their range. Keys are the azimuth in steps of 2^-24, and the bits of
  * 1 - cos(theta), so that the smallest lobe has as many as the widest.
@@ -192,9 +192,9 @@ ACDF_FN4(AcdfVector, acdf_reflected, AcdfShaderView, view, ACDF_F32, azimuth, AC
     return acdf_vector(twice * hx - view.x, twice * hy - view.y, twice * hz - view.z);
 }
 
-/* ---- densities of half-vectors ---------------------------------------------------------------------- */
+/* ---- pdfs of half-vectors --------------------------------------------------------------------------- */
 
-/* Density of a direction of height z where a walk ended: of the cell, and of the cosine's share. */
+/* The pdf, in sr^-1, of a direction of height z where a traversal ended: of the cell, and of the cosine's share. */
 ACDF_FN5(ACDF_F32, acdf_brdf_pdf_at, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32, spread,
          ACDF_F32, z) {
     ACDF_LET(ACDF_F32, lobe) =
@@ -205,8 +205,8 @@ ACDF_FN5(ACDF_F32, acdf_brdf_pdf_at, ACDF_TABLES, tables, AcdfShaderView, view, 
     return (1.0f - view.diffuse) * lobe + view.diffuse * ACDF_MAX(z, 0.0f) * 0.31830989f;
 }
 
-/* Density per steradian with which acdf_brdf_walk_sample samples wi (unit) for a view. 0 where none falls, and for
- * directions whose length differs from 1 by more than 5e-4 or that are not finite. */
+/* The pdf, per steradian, with which acdf_brdf_walk_sample samples wi (unit) for a view. 0 where none falls, and
+ * for directions whose length differs from 1 by more than 5e-4 or that are not finite. */
 ACDF_FN5(ACDF_F32, acdf_brdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderView, view, ACDF_F32, x, ACDF_F32, y,
          ACDF_F32, z) {
     ACDF_LET(AcdfShaderHalf, place) = acdf_half_of(view, x, y, z);
@@ -222,7 +222,7 @@ ACDF_FN5(ACDF_F32, acdf_brdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderView, view
 
 /* ---- samples of half-vectors -------------------------------------------------------------------------- */
 
-/* Whether a place lies in the cell of a leaf. */
+/* Whether a position lies in the cell of a leaf. */
 ACDF_FN3(ACDF_U32, acdf_leaf_holds, ACDF_TABLES, tables, ACDF_U32, leaf, AcdfShaderHalf, place) {
     ACDF_LET(ACDF_U32, inside0) =
         ACDF_SELECT(place.key0 - ACDF_WORD(tables, leaf + 4u) < ACDF_WORD(tables, leaf + 5u), 1u, 0u);
@@ -238,8 +238,8 @@ ACDF_FN2(AcdfVector, acdf_as_returned, ACDF_TABLES, tables, AcdfVector, d) {
                        ACDF_FLOAT(ACDF_BITS(d.z) | zero));
 }
 
-/* Visibility a direction in the cell where a walk ended. Near its border rounding may carry it over: then it moves
- * towards the middle, so that its density is that of the cell. */
+/* Samples a direction in the cell where a traversal ended. Near its border rounding may carry it over: then it
+ * moves towards the middle, so that its pdf is that of the cell. */
 ACDF_FN4(AcdfWalkSample, acdf_sample_in_cell, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32,
          side) {
     ACDF_VAR(ACDF_F32, part0) = acdf_walk_part(end.numbers.at0, end.numbers.width0);
@@ -264,7 +264,8 @@ ACDF_FN4(AcdfWalkSample, acdf_sample_in_cell, ACDF_TABLES, tables, AcdfShaderVie
 }
 
 /* Samples wi for a view and two random words: n0 / 2^32 (azimuth of the half-vector) and n1 / 2^32 (its height) are
- * the random numbers of acdf_brdf_sample. wi may lie below the surface. pdf 0 where nothing is reflected. */
+ * the random numbers of acdf_brdf_sample. The direction wi may lie below the surface. pdf 0 where nothing is
+ * reflected. */
 ACDF_FN4(AcdfWalkSample, acdf_brdf_walk_sample, ACDF_TABLES, tables, AcdfShaderView, view, ACDF_U32, n0, ACDF_U32,
          n1) {
     ACDF_VAR(AcdfWalkNumbers, numbers) = acdf_walk_numbers(n0, n1);

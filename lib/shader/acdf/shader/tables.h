@@ -1,4 +1,4 @@
-// Words for a shader's buffer or texture, from which acdf/shader/walk.h and acdf/shader/brdf.h sample;
+// Words for a shader's buffer or texture, from which `acdf/shader/walk.h` and `acdf/shader/brdf.h` sample;
 // `acdf export` writes them, too.
 #pragma once
 
@@ -19,11 +19,11 @@ public:
     ShaderTables(const ShaderTables&) = delete;
     ShaderTables& operator=(const ShaderTables&) = delete;
 
-    /// Makes the tables of acdf/shader/walk.h of a file that is not empty: of environments and local environments,
-    /// on either grid; and those of acdf/shader/brdf.h of BRDFs. `unsupported` where there are none: for tables,
-    /// and for cells that tilt (--fit pdf). `out` then is empty. Work and memory are in proportion to the cells,
-    /// some 60 bytes each, and rows; of the fast shape to the file. Visibility are left out: what serves a normal
-    /// anywhere serves it at each of them.
+    /// Makes the tables of `acdf/shader/walk.h` of a file that is not empty: of environments and local
+    /// environments, on either grid; and those of acdf/shader/brdf.h of BRDFs. `unsupported` where there are none:
+    /// for tables, and for cells that tilt (--fit pdf). `out` then is empty. Work and memory are in proportion to
+    /// the cells, some 60 bytes each, and rows; of the fast shape to the file. Visibility cells are left out: a
+    /// normal is served alike at every position.
     static Status make(const File& file, ShaderTables& out) noexcept;
 
     /// Little-endian, as a GPU takes them.

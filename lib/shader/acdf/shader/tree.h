@@ -1,11 +1,11 @@
-/* Trees for shaders: mixtures of rows, and walks by random numbers or by the keys of a direction, over the words
- * that acdf::ShaderTables::make_walk (acdf/shader/tables.h) makes. 32-bit words and floats alone. One text for
- * processors and for shaders of every language (acdf/dialect.h).
+/* Trees for shaders: mixtures of rows, and traversals by random numbers or by the keys of a direction, over the
+ * words that acdf::ShaderTables::make_walk (acdf/shader/tables.h) makes. 32-bit words and floats alone. One text
+ * for processors and for shaders of every language (acdf/dialect.h).
  *
  * A tree of splits ends in leaves. A split is known by its key, which directions have too, so that one tree serves
- * samples and densities, and both multiply the same factors in the same order. Random numbers are whole, and what
- * is left of them is exact: a cell of probability p is sampled with p but for 2^-24 of it a split, which is where
- * floats put borders. */
+ * samples and pdfs, and both multiply the same factors in the same order. Random numbers are whole, and splits
+ * leave an exact rest of them. A cell of probability p is sampled with p but for 2^-24 of it a split, since floats
+ * round the borders. */
 #ifndef ACDF_SHADER_TREE_H
 #define ACDF_SHADER_TREE_H
 
@@ -29,7 +29,7 @@ extern "C" {
 #define ACDF_WALK_COLUMNS 7u      /* of that grid */
 #define ACDF_WALK_ROWS 8u
 #define ACDF_WALK_BINS 9u       /* 2 words each: row (link, where bins have trees) and share, f32 */
-#define ACDF_WALK_BIN_COUNT 10u /* 0: the file knows no normals */
+#define ACDF_WALK_BIN_COUNT 10u /* 0: the file stores no normals */
 #define ACDF_WALK_CODES                                                                                            \
     11u /* f32, 256 pairs: what parts a code gives to the lower and to the upper half of a split */
 #define ACDF_WALK_CODE_ROWS 12u /* bytes, a code a split: `stride` of them a row */
@@ -50,7 +50,7 @@ extern "C" {
 #define ACDF_WALK_ON_GRIDS 0xFFFFFFFEu /* link of the mixture in the fast shape, which has no tree */
 #define ACDF_WALK_LEAF 0x80000000u     /* of a link: it is a leaf */
 #define ACDF_WALK_SPLIT                                                                                            \
-    0x40000000u /* of a node's chance: rows tell it, as their code of the split of that number */
+    0x40000000u /* of a node's chance: rows store it, as their code of the split of that number */
 
 /* Word i as a float. */
 ACDF_FN2(ACDF_F32, acdf_word_as_float, ACDF_TABLES, tables, ACDF_U32, i) {
@@ -59,9 +59,9 @@ ACDF_FN2(ACDF_F32, acdf_word_as_float, ACDF_TABLES, tables, ACDF_U32, i) {
 
 /* ---- mixtures --------------------------------------------------------------------------------------- */
 
-/* What is walked below a link: up to four rows side by side. */
+/* The mixture that is searched below a link: up to four rows side by side. */
 ACDF_STRUCT_BEGIN(AcdfWalkMixture)
-ACDF_FIELD(ACDF_U32, root) /* where walks begin; ACDF_WALK_NONE: there is nothing */
+ACDF_FIELD(ACDF_U32, root) /* where traversals begin; ACDF_WALK_NONE: there is nothing */
 ACDF_FIELD(ACDF_U32, row0)
 ACDF_FIELD(ACDF_U32, row1)
 ACDF_FIELD(ACDF_U32, row2)
@@ -139,9 +139,9 @@ ACDF_FN4(AcdfWalkMixture, acdf_mixture_part, ACDF_TABLES, tables, AcdfWalkMixtur
     return mix;
 }
 
-/* ---- walks ------------------------------------------------------------------------------------------ */
+/* ---- traversals ------------------------------------------------------------------------------------- */
 
-/* Words of a leaf; of what they tell, acdf/shader/walk.h and acdf/shader/brdf.h speak. */
+/* How many words a leaf has; `acdf/shader/walk.h` and `acdf/shader/brdf.h` list them. */
 #define ACDF_LEAF_WORDS 10u
 
 /* What is sampled. */
@@ -152,7 +152,7 @@ ACDF_FIELD(ACDF_F32, z)
 ACDF_FIELD(ACDF_F32, pdf) /* sr^-1; 0: nothing was sampled */
 ACDF_STRUCT_END(AcdfWalkSample)
 
-/* A direction with its density. */
+/* A direction with its pdf. */
 ACDF_FN2(AcdfWalkSample, acdf_walk_sampled, AcdfVector, d, ACDF_F32, pdf) {
     ACDF_VAR(AcdfWalkSample, sampled);
     sampled.x = d.x;
@@ -180,14 +180,14 @@ ACDF_FN2(AcdfWalkNumbers, acdf_walk_numbers, ACDF_U32, n0, ACDF_U32, n1) {
     return numbers;
 }
 
-/* Where a walk ends. */
+/* Where a traversal ends. */
 ACDF_STRUCT_BEGIN(AcdfWalkEnd)
 ACDF_FIELD(ACDF_U32, leaf)  /* its word */
 ACDF_FIELD(ACDF_F32, given) /* what the rows give to it */
 ACDF_FIELD(AcdfWalkNumbers, numbers)
 ACDF_STRUCT_END(AcdfWalkEnd)
 
-/* Where a walk with a mixture has come to a leaf, its root. */
+/* Where a traversal with a mixture has come to a leaf, its root. */
 ACDF_FN3(AcdfWalkEnd, acdf_walk_end, ACDF_TABLES, tables, AcdfWalkMixture, mix, AcdfWalkNumbers, left) {
     ACDF_VAR(AcdfWalkEnd, end);
     end.leaf = ACDF_WORD(tables, ACDF_WALK_LEAVES) + ACDF_LEAF_WORDS * (mix.root & 0x7FFFFFFFu);

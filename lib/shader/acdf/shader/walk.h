@@ -7,8 +7,8 @@
  * cells of the octahedral square. The fast shape of local environments has tiles and grids instead
  * (acdf/shader/tiles.h, acdf/shader/grids.h).
  *
- * Densities are the reader's but for the rounding of floats, below 1e-5 of them. A sample is moved 2^-20 radians
- * (or 2^-20 of the square's side) inwards; the density of a direction so close to a border may be the neighbour's.
+ * Pdfs are the reader's but for the rounding of floats, below 1e-5 of them. A sample is moved 2^-20 radians
+ * (or 2^-20 of the square's side) inwards; the pdf of a direction so close to a border may be the neighbour's.
  */
 #ifndef ACDF_SHADER_WALK_H
 #define ACDF_SHADER_WALK_H
@@ -21,17 +21,17 @@ extern "C" {
 
 /* ---- leaves ----------------------------------------------------------------------------------------- */
 
-/* Words of a leaf: quarter, south (bit 2), and the number of the tile's light and 1 (from bit 3); density in its
- * tile or tree, sr^-1; of each axis low, width, the least and the greatest that is sampled. Axes are local azimuth
- * (radians) and 1 - |z|, in the south from the pole up, or those of the square. */
+/* The first word of a leaf: quarter, south (bit 2), and the number of the tile's light and 1 (from bit 3). Next is
+ * the pdf in its tile or tree, sr^-1; then of each axis low, width, the least and the greatest that is sampled.
+ * Axes are local azimuth (radians) and 1 - |z|, in the south from the pole up, or those of the square. */
 
 /* Keys of a direction: upper parts of splits begin at theirs. */
 #define ACDF_WALK_SEAM 20971520u /* key0 of acdf_direction_keys at phi = pi, where columns begin */
 #define ACDF_WALK_SOUTH 0x7F000000u
 
-/* ---- densities -------------------------------------------------------------------------------------- */
+/* ---- pdfs ------------------------------------------------------------------------------------------- */
 
-/* Density of what follows the light, sr^-1, where a walk ended: in the tile of a light that of the light. */
+/* The pdf of what follows the light, sr^-1, where a traversal ended: in a bright tile that of its light. */
 ACDF_FN3(ACDF_F32, acdf_walk_bright_tile_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkEnd, end) {
     ACDF_LET(ACDF_U32, light) = ACDF_WORD(tables, end.leaf) >> 3u;
     ACDF_VAR(ACDF_F32, given) = end.given;
@@ -52,8 +52,8 @@ ACDF_FN5(ACDF_F32, acdf_walk_combined_pdf, AcdfShaderPoint, here, ACDF_F32, ligh
     return (1.0f - here.cosine) * light + here.cosine * cosine * 0.31830989f;
 }
 
-/* Density per steradian with which acdf_walk_sample samples a direction (unit) at a point. 0 where none falls, and
- * for directions whose length differs from 1 by more than 5e-4 or that are not finite. */
+/* The pdf, per steradian, with which acdf_walk_sample samples a direction (unit) at a point. 0 where none falls,
+ * and for directions whose length differs from 1 by more than 5e-4 or that are not finite. */
 ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_F32, x, ACDF_F32, y, ACDF_F32,
          z) {
     ACDF_LET(AcdfUnit, d) = acdf_unit_of(x, y, z);
@@ -99,7 +99,7 @@ ACDF_FN2(AcdfVector, acdf_walk_direction, ACDF_TABLES, tables, AcdfWalkEnd, end)
     return acdf_piece_direction(along, height, flags & 3u, south);
 }
 
-/* A direction around a unit normal with density cos / pi: acdf_cosine_direction. */
+/* A direction around a unit normal with pdf cos / pi: acdf_cosine_direction. */
 ACDF_FN3(AcdfVector, acdf_walk_cosine, AcdfShaderPoint, here, ACDF_F32, u0, ACDF_F32, u1) {
     ACDF_LET(ACDF_F32, h) = ACDF_SQRT(ACDF_MAX(1.0f - u1, 1e-10f));
     ACDF_LET(ACDF_F32, r) = ACDF_SQRT(ACDF_MAX(1.0f - h * h, 0.0f));
@@ -145,7 +145,7 @@ ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_bright_tile, ACDF_TABLES, tables, AcdfSha
     return end;
 }
 
-/* Samples by bright tiles and rows: where a walk ends; of the fast shape the tile of a light, or
+/* Samples by bright tiles and rows: where a traversal ends; of the fast shape the tile of a light, or
  * ACDF_WALK_ON_GRIDS. */
 ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_row, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
     ACDF_VAR(AcdfWalkNumbers, left) = numbers;
@@ -176,11 +176,11 @@ ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_row, ACDF_TABLES, tables, AcdfShaderPoint
 }
 
 /* Samples a direction at a point for two random words: n0 / 2^32 (azimuth) and n1 / 2^32 (elevation) are the random
- * numbers of acdf_local_sample_at and acdf_environment_sample. pdf 0 where nothing serves the point. */
+ * numbers of acdf_local_sample_at and acdf_environment_sample. The pdf is 0 where nothing serves the point. */
 ACDF_FN4(AcdfWalkSample, acdf_walk_sample, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_U32, n0, ACDF_U32, n1) {
     ACDF_VAR(AcdfWalkNumbers, numbers) = acdf_walk_numbers(n0, n1);
     ACDF_VAR(AcdfVector, d) = acdf_vector(0.0f, 0.0f, 0.0f);
-    ACDF_VAR(ACDF_F32, light) = -1.0f; /* density of what follows the light, where it is known */
+    ACDF_VAR(ACDF_F32, light) = -1.0f; /* pdf of what follows the light, where it is known */
     if (here.mix.root == ACDF_WALK_NONE) {
         return acdf_walk_sampled(d, 0.0f);
     }
