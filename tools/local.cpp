@@ -271,7 +271,7 @@ void LocalConversion::add_bins(CLI::App& command) {
         ->option_text("N|AxB [as suits the size]")
         ->group("Normals");
     scene_.add(command,
-               "Only what a scene requires: a mesh (.obj, .ply, .instances), a normal pass (.exr) or a list of "
+               "Only the normals of a scene: a mesh (.obj, .ply, .instances), a normal pass (.exr) or a list of "
                "normals (.txt, x y z [weight] a line). Bins that do not occur are not stored: a normal outside is "
                "served by the whole environment, unbiased but noisier",
                "Normals");
