@@ -197,9 +197,8 @@ void add_brdf(CLI::App& program, int& exit_code) {
         {"BRDF", ".acdf",
          "MERL .binary, RGL .bsdf, an .npy over (theta_o, phi_o, theta_h, phi_h), or a model: lambert, "
          "ggx:0.1[,0.3] (or ggx:alpha=0.1), cook-torrance:m=0.2,n=1.5,k=0, blinn:100. Several become a file each",
-         help_footer("Prints the size and the relative variance of the stored densities over random "
-                     "views, cos(theta_o) uniform in "
-                     "[0.1, 1]: n samples have that over n.",
+         help_footer("Prints the size and the relative variance of the stored pdfs over random views, cos(theta_o) "
+                     "uniform in [0.1, 1]. An estimate of n samples has 1/n of this variance.",
                      "acdf brdf nickel.binary\n"
                      "acdf brdf ggx:0.1 -o ggx.acdf\n"
                      "acdf brdf cc_ibiza_sunset_rgb.bsdf -o ibiza.acdf --budget 200KiB\n"

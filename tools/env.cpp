@@ -246,9 +246,9 @@ Converted EnvConversion::convert(const Listener& listener) {
 void EnvConversion::add_fit_options(CLI::App& command) {
     builder::FitOptions& fit = environment_.fit;
     add_fit(command, fit.fit,
-            "How knots are chosen: variance (least noise for its size), cdf (Lawrence et al. 2005, "
-            "Douglas-Peucker on the CDF), pdf (the same on the density, piecewise linear: for smooth skies), "
-            "uniform (equal steps, to compare with)")
+            "How knots are chosen: variance (least noise for its size), cdf (Lawrence et al. 2005, Douglas-Peucker "
+            "on the CDF), pdf (the same on the pdf, piecewise linear: for smooth skies), uniform (equal steps, to "
+            "compare with)")
         ->group("Fit");
     enum class First { either, phi, z };
     constexpr Named<First> orders[] = {{"auto", First::either}, {"phi", First::phi}, {"z", First::z}};
@@ -275,10 +275,9 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         ->option_text("AxB [64x64]")
         ->group("Size and accuracy");
     command
-        .add_option(
-            "--eps", fit.epsilon,
-            "Stop adding knots once no curve deviates by more: from the CDF for --fit cdf, from the density "
-            "relative to its peak for --fit pdf")
+        .add_option("--eps", fit.epsilon,
+                    "Stop adding knots once no curve deviates by more: from the CDF for --fit cdf, from the pdf "
+                    "relative to its peak for --fit pdf")
         ->check(number_range(0.0, 1.0))
         ->option_text("E")
         ->group("Size and accuracy");
@@ -328,8 +327,8 @@ void add_env(CLI::App& program, int& exit_code) {
         {"PROBE", ".acdf",
          "The environment map: any image OpenImageIO reads, or the six faces of a cube (--faces). Several become a "
          "file each",
-         help_footer("Prints the size and the exact relative variance of the stored density: n samples have "
-                     "that over n. By default the file has the least noise in 64 KiB.",
+         help_footer("Prints the size and the exact relative variance of the stored pdf: an estimate of n samples "
+                     "has 1/n of this variance. By default the file has the least noise in 64 KiB.",
                      "acdf env probe.exr\n"
                      "acdf env probe.hdr -o probe.acdf --budget 16KiB\n"
                      "acdf env noon.exr dusk.exr -o skies/\n"

@@ -356,13 +356,12 @@ void add_info(CLI::App& program, int& exit_code) {
         ->required()
         ->type_name("");
     add_json(*command, options->json);
-    command->footer(help_footer(
-        "The accuracy is that of the build, stored in the file: the source is not needed. `acdf measure` computes "
-        "it "
-        "anew. A cell is a part of the sphere of constant (or linear) density; one that bins share counts once.",
-        "acdf info sky.acdf\n"
-        "acdf info --json sky.acdf | jq .accuracy.relative_variance\n"
-        "acdf info --json *.acdf | jq -r '.[] | [.file, .bytes, .cells] | @tsv'"));
+    command->footer(help_footer("The accuracy was measured at the build and is stored in the file, so no source is "
+                                "needed. `acdf measure` computes it anew. A cell is a part of the sphere where the "
+                                "pdf is constant (or linear). A cell that several bins share counts once.",
+                                "acdf info sky.acdf\n"
+                                "acdf info --json sky.acdf | jq .accuracy.relative_variance\n"
+                                "acdf info --json *.acdf | jq -r '.[] | [.file, .bytes, .cells] | @tsv'"));
     command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -271,7 +271,7 @@ void LocalConversion::add_bins(CLI::App& command) {
         ->option_text("N|AxB [as suits the size]")
         ->group("Normals");
     scene_.add(command,
-               "Only what a scene requires: a mesh (.obj, .ply, .instances), a normal pass (.exr) or a list of "
+               "Only the normals of a scene: a mesh (.obj, .ply, .instances), a normal pass (.exr) or a list of "
                "normals (.txt, x y z [weight] a line). Bins that do not occur are not stored: a normal outside is "
                "served by the whole environment, unbiased but noisier",
                "Normals");
@@ -293,8 +293,8 @@ void LocalConversion::add_bins(CLI::App& command) {
     command
         .add_option(
             "--cosine-share", local.cosine_share,
-            "This share of samples is taken around the normal instead, density cos/pi; sample and pdf apply "
-            "the mixture. For scenes in which the brightest light is often hidden; 0.2 is a good value")
+            "This share of samples follows the cosine around the normal instead, with pdf cos/pi; sample and pdf "
+            "apply the mixture. For scenes in which the brightest light is often hidden; 0.2 is a good value")
         ->check(number_range(0.0, 0.99))
         ->option_text("X [0]")
         ->group("Normals");

@@ -158,7 +158,7 @@ void run(const PdfArguments& options) {
 void add_pdf(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<PdfArguments>();
     CLI::App* command =
-        program.add_subcommand("pdf", "Evaluate the density of directions, or points, given on stdin or in a file");
+        program.add_subcommand("pdf", "Evaluate the pdf of directions, or points, given on stdin or in a file");
     command->add_option("FILE", options->file, "The .acdf file to evaluate (- is stdin)")
         ->required()
         ->type_name("");
@@ -170,21 +170,21 @@ void add_pdf(CLI::App& program, int& exit_code) {
     command
         ->add_flag("--normalize", options->normalize,
                    "Scale directions to unit length first. Without it a direction that is not of unit length has "
-                   "density 0, as in a renderer, where it shows a mistake")
+                   "pdf 0, as in a renderer, where it shows a mistake")
         ->group("Evaluation");
     add_normal(*command, options->normal, "Evaluation", "; without it each line has one: x y z nx ny nz");
     add_view(*command, options->view, "Evaluation");
     add_bin(*command, options->at, "Evaluation");
-    command->add_flag("--csv", options->csv, "Print x,y,z,pdf instead of the density alone")->group("Output");
+    command->add_flag("--csv", options->csv, "Print x,y,z,pdf instead of the pdf alone")->group("Output");
     add_output(*command, options->output, options->force, "The file to write, stdout by default");
-    command->footer(help_footer("One density a line, per steradian, in the order of the directions; 0 where no "
-                                "sample can fall. Blank lines and "
-                                "what follows a # are skipped. Of a table: points x0 x1 ... in the units of its "
-                                "sampled axes, densities per product of these units.",
-                                "echo '0 0 1' | acdf pdf sky.acdf\n"
-                                "acdf pdf sky.acdf directions.csv --csv -o densities.csv\n"
-                                "acdf sample local.acdf -n 9 --normal 0,0,1 | acdf pdf local.acdf --normal 0,0,1\n"
-                                "acdf sample sky.acdf -n 1000 | acdf pdf sky.acdf"));
+    command->footer(
+        help_footer("Prints one pdf a line, per steradian, in the order of the directions; 0 where no sample can "
+                    "fall. Blank lines and comments after a # are skipped. Of a table: points x0 x1 ... in the "
+                    "units of its sampled axes, pdfs per product of these units.",
+                    "echo '0 0 1' | acdf pdf sky.acdf\n"
+                    "acdf pdf sky.acdf directions.csv --csv -o densities.csv\n"
+                    "acdf sample local.acdf -n 9 --normal 0,0,1 | acdf pdf local.acdf --normal 0,0,1\n"
+                    "acdf sample sky.acdf -n 1000 | acdf pdf sky.acdf"));
     command->callback([options, &exit_code] {
         run(*options);
         exit_code = exit_done;

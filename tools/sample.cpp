@@ -152,7 +152,7 @@ void add_sample(CLI::App& program, int& exit_code) {
                                                           {"sobol", measure::SequenceKind::sobol}};
     auto options = std::make_shared<SampleArguments>();
     CLI::App* command = program.add_subcommand(
-        "sample", "Sample directions, or points of a table: CSV of random numbers, direction and density");
+        "sample", "Sample directions, or points of a table: CSV of random numbers, direction and pdf");
     command->add_option("FILE", options->file, "The .acdf file to sample (- is stdin)")->required()->type_name("");
     command->add_option("-n,--count", options->count, "How many directions to sample")
         ->required()

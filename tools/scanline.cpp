@@ -174,10 +174,9 @@ void add_scanline(CLI::App& program, int& exit_code) {
     command->add_flag("--csv", options->csv, "The table as CSV")->excludes("--json");
     add_quiet(*command, options->quiet);
     command->footer(help_footer(
-        "The study of Lawrence et al. 2005, Fig. 6. The row is a density over its columns; the error is that of "
-        "the "
-        "stored density, as a share of the mean density. With S segments a curve has S + 1 knots. The fit `pdf` is "
-        "linear on each segment and stores a slope too; `variance` minimises noise, not this error.",
+        "The study of Lawrence et al. 2005, Fig. 6. The fits approximate the pdf of the row over its columns. The "
+        "error is that of the stored pdf, as a share of the mean pdf. With S segments a curve has S + 1 knots. The "
+        "fit `pdf` is linear on each segment and stores a slope too; `variance` minimises noise, not this error.",
         "acdf scanline sky.exr --row auto-smooth\n"
         "acdf scanline grace_probe.hdr --projection angular --row 300\n"
         "acdf scanline sky.exr --json | jq .factor.cdf.median\n"

@@ -193,10 +193,9 @@ void run(TableArguments& options) {
 
 void add_axis_options(CLI::App& command, TableArguments& options) {
     command
-        .add_option(
-            "--indexed", options.table.indexed,
-            "How many of the first axes are chosen by whoever samples (a view direction, a pixel) instead of "
-            "sampled: each combination of their indices is a bin with a density of its own")
+        .add_option("--indexed", options.table.indexed,
+                    "How many of the first axes are chosen by the caller (a view direction, a pixel) instead of "
+                    "sampled: each combination of their indices is a bin with a pdf of its own")
         ->check(CLI::Range(0u, 5u))
         ->option_text("K [0]")
         ->group("Axes");
@@ -205,10 +204,9 @@ void add_axis_options(CLI::App& command, TableArguments& options) {
         ->option_text("A,B,... [x0,x1,...]")
         ->group("Axes");
     command
-        .add_option(
-            "--range", options.ranges,
-            "The coordinates at both ends of an axis, by its name or number: samples come, and densities are "
-            "evaluated, in these units (--range theta=0:3.14159). May be repeated")
+        .add_option("--range", options.ranges,
+                    "The coordinates at both ends of an axis, by its name or number: samples and pdfs are in these "
+                    "units (--range theta=0:3.14159). May be repeated")
         ->option_text("AXIS=LOW:HIGH [0 to length]")
         ->group("Axes");
     constexpr Named<input::BadValuePolicy> policies[] = {{"error", input::BadValuePolicy::refuse},
@@ -229,11 +227,10 @@ void add_size_options(CLI::App& command, TableArguments& options) {
 
 void add_mis_options(CLI::App& command, TableArguments& options) {
     command
-        .add_option(
-            "--mis", options.other,
-            "Another table of the same shape, which your renderer also samples from, weighing both by multiple "
-            "importance sampling: within each bin its numbers are its density. Where that is enough the "
-            "density of the file is 0: never use such a file alone")
+        .add_option("--mis", options.other,
+                    "Another table of the same shape, which your renderer also samples, weighing both by multiple "
+                    "importance sampling: within each bin its numbers are its pdf. The file's pdf is 0 where that "
+                    "table alone is enough: never use such a file alone")
         ->type_name("")
         ->option_text("OTHER.npy")
         ->group("MIS partner");
@@ -262,14 +259,13 @@ void add_table(CLI::App& program, int& exit_code) {
     add_threads(command, options->threads);
     add_json(command, options->json);
     add_quiet(command, options->quiet);
-    command.footer(help_footer(
-        "Each number is the value of a function that is constant on its box of the grid. The density is per "
-        "product "
-        "of the units of the sampled axes. A float64 table is fitted as float32, scaled by a power of two where it "
-        "would not fit; the integral stays exact.",
-        "acdf table histogram.npy -o histogram.acdf\n"
-        "acdf table field.npy -o field.acdf --indexed 2 --names s,t,u,v --range u=-1:1 --range v=-1:1\n"
-        "acdf table volume.npy -o volume.acdf --budget 256KiB --json"));
+    command.footer(
+        help_footer("Each number is the value of a function that is constant on its box of the grid. The pdf is "
+                    "per product of the units of the sampled axes. A float64 table is fitted as float32, scaled by "
+                    "a power of two where it would not fit; the integral stays exact.",
+                    "acdf table histogram.npy -o histogram.acdf\n"
+                    "acdf table field.npy -o field.acdf --indexed 2 --names s,t,u,v --range u=-1:1 --range v=-1:1\n"
+                    "acdf table volume.npy -o volume.acdf --budget 256KiB --json"));
     command.callback([options, &exit_code] {
         options->output = output_names({options->array}, options->output, ".acdf")[0];
         run(*options);

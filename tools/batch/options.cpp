@@ -43,13 +43,12 @@ void add_how(CLI::App& command, BatchArguments& options) {
                   "Make all files again. Without it those are skipped that were made of the same source with the "
                   "same options")
         ->group("Output");
-    command.add_flag("-n,--dry-run", options.dry_run, "Only tell what would be made or skipped, and why")
+    command.add_flag("-n,--dry-run", options.dry_run, "Only print which files would be made or skipped, and why")
         ->group("Output");
     command
         .add_flag("--gallery", options.gallery,
-                  "Write DIR/gallery.html too: thumbnails of each source and its density, size and noise, on one "
-                  "page that "
-                  "needs no other file")
+                  "Write DIR/gallery.html too: thumbnails of each source and its pdf, size and noise, on one page "
+                  "that needs no other file")
         ->group("Output");
     add_json(command, options.json);
     add_quiet(command, options.quiet);
@@ -78,7 +77,7 @@ void add_how(CLI::App& command, BatchArguments& options) {
         ->group("Farm");
     command
         .add_flag("--merge-reports", options.merge,
-                  "Merge what --json told for each shard, and name shards without")
+                  "Merge the --json reports of all shards, and name missing shards")
         ->group("Farm");
     command.add_option("--emit", options.emit, "ninja: write DIR/build.ninja instead of running")
         ->check(CLI::IsMember({"ninja"}).description(""))

@@ -32,8 +32,7 @@ inline void add_goal(CLI::App& command, std::uint32_t& cells, std::string& budge
     command
         .add_option(
             "--budget", budget,
-            "The most accurate file of at most this size, such as 64KiB or 20kB: for a fixed place in a cache, "
-            "or a download")
+            "The most accurate file of at most this size, such as 64KiB or 20kB: to fit a cache, or a download")
         ->check([](const std::string& text) {
             const auto bytes = parse_size(text);
             return bytes && *bytes == 0 ? std::string("needs a size above 0") : std::string();

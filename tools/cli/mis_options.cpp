@@ -18,13 +18,13 @@ void add_partner(CLI::App& command, builder::Partner& partner, bool mean) {
                     throw CLI::ValidationError("--mis", "'" + text + "' is none of none, cosine, brdf" +
                                                             (mean ? ", mean" : ""));
             },
-            mean ? "What the file is combined with, by multiple importance sampling: cosine (diffuse surfaces), "
-                   "brdf "
-                   "(lobes of several widths), mean (as if it were the same everywhere: Karlik et al. 2019). Where "
-                   "that is enough the density is 0: never use such a file alone"
-                 : "What the file is combined with, by multiple importance sampling: cosine (diffuse surfaces), "
-                   "brdf "
-                   "(lobes of several widths). Where that is enough the density is 0: never use such a file alone")
+            mean ? "The sampling technique that your renderer combines with the file by multiple importance "
+                   "sampling: cosine (diffuse surfaces), brdf (lobes of several widths), mean (a partner with the "
+                   "same pdf everywhere: Karlik et al. 2019). The file's pdf is 0 where the partner alone is "
+                   "enough: never use such a file alone"
+                 : "The sampling technique that your renderer combines with the file by multiple importance "
+                   "sampling: cosine (diffuse surfaces), brdf (lobes of several widths). The file's pdf is 0 where "
+                   "the partner alone is enough: never use such a file alone")
         ->option_text("NAME [none]")
         ->group(group);
     add_weighing(command, partner);

@@ -38,10 +38,10 @@ inline void add_faces(CLI::App& command, std::optional<input::Faces>& faces) {
                                                "of the files, such as +x,-x,+y,-y,+z,-z");
                 faces = parsed;
             },
-            "The probe is six faces of a cube: six files, or one strip (1:6, 6:1, 2:3, 3:2), in the order +X -X +Y "
-            "-Y +Z -Z of directx (pictures as seen from inside), opengl (mirrored pictures) or openexr (texel "
-            "centres "
-            "on the borders); or in another order: six of +x,-x,+y,-y,+z,-z (px, posx, right ... too), as directx")
+            "The probe is six faces of a cube: six files, or one strip (1:6, 6:1, 2:3, 3:2). Their order is +X -X "
+            "+Y -Y +Z -Z for directx (pictures as seen from inside), opengl (mirrored pictures) and openexr (texel "
+            "centres on the borders). Any other order is six of +x,-x,+y,-y,+z,-z (px, posx, right ... too), with "
+            "pictures as in directx")
         ->option_text("ORDER")
         ->group("Input");
 }
@@ -52,9 +52,9 @@ inline void add_domain(CLI::App& command, input::Domain& domain) {
                                               {"latlong", input::Domain::latlong},
                                               {"octahedral", input::Domain::octahedral}};
     add_choice(command, "--domain", domain, names,
-               "The grid that the fit lies on: source (the texels of a lat-long or octahedral probe themselves; "
-               "for other probes the one of both grids that loses least), latlong, octahedral (equal-area). "
-               "Noise is that of a renderer that looks the probe itself up, whatever the grid")
+               "The grid that the fit lies on: source (the texels of a lat-long or octahedral probe; for other "
+               "probes the grid of the two that loses least), latlong, octahedral (equal-area). The noise reported "
+               "is that of a renderer that looks the probe itself up, whatever the grid")
         ->option_text("NAME [source]")
         ->group("Input");
 }
@@ -64,15 +64,15 @@ inline void add_repairs(CLI::App& command, input::ProbeOptions& options) {
     constexpr Named<build::BadPixels> policies[] = {
         {"zero", build::BadPixels::zero}, {"clamp", build::BadPixels::clamp}, {"error", build::BadPixels::error}};
     add_choice(command, "--bad-pixels", options.bad_pixels, policies,
-               "What becomes of NaN, infinite and negative values: zero; clamp (+infinity becomes what half "
-               "floats end at, 65504, or in other files the largest finite value of its channel, the others 0); "
-               "error (refuse the probe). They are counted and reported")
+               "Treatment of NaN, infinite and negative values: zero; clamp (+infinity becomes 65504 in files of "
+               "half floats, in others the largest finite value of its channel; the other bad values become 0); "
+               "error (refuse the probe). The command counts and reports them")
         ->option_text("NAME [zero]")
         ->group("Input");
     constexpr Named<bool> when_black[] = {{"error", false}, {"uniform", true}};
     add_choice(command, "--on-black", options.uniform_if_black, when_black,
-               "What becomes of a probe without any light: error, or uniform (all directions are equally likely; "
-               "the total is next to 0)")
+               "Treatment of a probe without any light: error, or uniform (all directions are equally likely; the "
+               "total is next to 0)")
         ->option_text("NAME [error]")
         ->group("Input");
 }

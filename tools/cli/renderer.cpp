@@ -26,10 +26,10 @@ void add_renderer(CLI::App& command, const builder::Renderer*& chosen) {
                     throw CLI::ValidationError("--for", "'" + name + "' is none of " + renderer_names() +
                                                             "; docs/conventions.md says what is known of others");
             },
-            "The renderer that will use the file: sets --domain, --filter, --wrap and --channel as it looks its "
-            "map "
-            "up, --mis and --heuristic as its path integrator combines samples, but for those that are given by "
-            "themselves, and says which axes to swap: " +
+            "The renderer that will use the file. It sets --domain, --filter, --wrap and --channel to how the "
+            "renderer looks its map up, and --mis and --heuristic to how its path integrator combines samples. "
+            "Options that you give yourself take precedence. The command prints which axes to swap. The "
+            "renderers: " +
                 renderer_names())
         ->option_text("NAME")
         ->group("Input");

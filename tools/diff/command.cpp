@@ -161,10 +161,8 @@ void add_diff(CLI::App& program, int& exit_code) {
     add_json(command, options->json);
     add_quiet(command, options->quiet);
     command.footer(help_footer("The share of samples that fall elsewhere is the total variation distance of both "
-                               "densities, from 0 to 1. Local files "
-                               "are compared for 64 normals, BRDFs for 32 views, tables for up to 64 bins; files "
-                               "that store visibility cells by their "
-                               "bytes alone.",
+                               "pdfs, from 0 to 1. Local files are compared for 64 normals, BRDFs for 32 views, "
+                               "tables for up to 64 bins; files that store visibility cells by their bytes alone.",
                                "acdf diff before.acdf after.acdf\n"
                                "acdf diff sky.acdf sky.zlib.acdf --tolerance 0\n"
                                "acdf diff old.acdf new.acdf --tolerance 0.01 --quiet && echo as good as the same",

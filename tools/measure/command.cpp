@@ -223,13 +223,12 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->group("Output");
     add_json(command, options->json);
     add_quiet(command, options->quiet);
-    command.footer(help_footer(
-        "Nothing is sampled, so the figures carry no noise of their own. Against another source than "
-        "the file's own "
-        "a line on stderr says so; it is an error where that has light and the density is 0. Its own is read with "
-        "the --projection that it was made with.",
-        "acdf measure probe.acdf --against probe.exr\n"
-        "acdf measure probe.acdf --against probe.exr --json | jq .relative_variance"));
+    command.footer(
+        help_footer("The figures are exact sums over the source, so they carry no noise of their own. A source "
+                    "other than the file's own is reported on stderr, and is an error where it has light and the "
+                    "pdf is 0. The file's own source is read with the --projection that the file was made with.",
+                    "acdf measure probe.acdf --against probe.exr\n"
+                    "acdf measure probe.acdf --against probe.exr --json | jq .relative_variance"));
     command.callback([options, &exit_code] {
         run(*options);
         exit_code = exit_done;

@@ -223,39 +223,35 @@ void add_picture_options(CLI::App& command, PlotArguments& options) {
         ->option_text("NAME [latlong; BRDFs: hemisphere]")
         ->group("Picture");
     command
-        .add_option(
-            "--width", options.width,
-            "Pixels across the density, without the legend. By default a pixel for each grid step, within 512 "
-            "and 2048 (angular: 1024)")
+        .add_option("--width", options.width,
+                    "Width of the pdf's map in pixels, without the legend. By default a pixel for each grid step, "
+                    "within 512 and 2048 (angular: 1024)")
         ->check(CLI::Range(smallest_width, largest_width).description(""))
         ->option_text("N")
         ->group("Picture");
     command
-        .add_option(
-            "--range", options.range,
-            "Densities in sr^-1 of the first and the last colour, such as 1e-3:100. Give it where pictures are "
-            "to be compared; by default it fits this picture, leaving out outliers")
+        .add_option("--range", options.range,
+                    "The pdfs of the first and the last colour in sr^-1, such as 1e-3:100. Give it where pictures "
+                    "are to be compared; by default it fits this picture, leaving out outliers")
         ->option_text("MIN:MAX")
         ->group("Picture");
     command
         .add_flag_callback(
             "--no-knots", [&options] { options.knots = false; },
-            "Leave out the borders of cells (drawn by default; they fade where cells are too small to see)")
+            "Leave out the borders of cells (shown by default; they fade where cells are too small to see)")
         ->group("Picture");
     command
         .add_flag_callback(
             "--no-legend", [&options] { options.legend = false; },
-            "Leave out title and colour bar (drawn by default): exactly the density's pixels, for a figure")
+            "Leave out title and colour bar (shown by default): exactly the pixels of the pdf, for a figure")
         ->group("Picture");
 }
 
 void add_mesh_options(CLI::App& command, PlotArguments& options) {
     command
-        .add_option(
-            "--scene", options.mesh,
-            "For a file that stores visibility cells, the mesh (.obj, .ply, .instances) that it was made for: "
-            "its cells are "
-            "shown over it, not a density")
+        .add_option("--scene", options.mesh,
+                    "The mesh (.obj, .ply, .instances) of a file that stores visibility cells: the picture shows "
+                    "these cells over the mesh, instead of a pdf")
         ->type_name("FILE")
         ->group("Cells over a mesh");
     add_scene_up(command, options.up, "Which axis of the scene points up, as in acdf local")
@@ -272,13 +268,11 @@ void add_mesh_options(CLI::App& command, PlotArguments& options) {
 
 void add_plot(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<PlotArguments>();
-    CLI::App& command =
-        *program.add_subcommand("plot", "Show a density in false colours, and the cells that hold it");
+    CLI::App& command = *program.add_subcommand("plot", "Show a pdf in false colours, and the cells that store it");
     command
-        .add_option(
-            "FILE", options->file,
-            "An .acdf file of an environment, local or not, or of a BRDF (- is stdin), or a probe, whose own "
-            "density is then shown at full resolution")
+        .add_option("FILE", options->file,
+                    "An .acdf file of an environment, local or not, or of a BRDF (- is stdin), or a probe, whose "
+                    "own pdf is then shown at full resolution")
         ->required()
         ->type_name("")
         ->group("Input");
@@ -292,32 +286,30 @@ void add_plot(CLI::App& program, int& exit_code) {
         ->group("Input");
     add_normal(command, options->normal, "Input",
                "; the white line is its horizon. Without it the six axes are shown");
-    comma_separated(command.add_option("--position", options->position,
-                                       "For a file that stores visibility cells (acdf local --visibility), the "
-                                       "position in its scene; without it "
-                                       "what is drawn where a position is not known"),
-                    3)
+    comma_separated(
+        command.add_option("--position", options->position,
+                           "For a file that stores visibility cells (acdf local --visibility), the position in its "
+                           "scene; without it the picture shows the pdf without occlusion"),
+        3)
         ->option_text("X,Y,Z")
         ->group("Input");
     add_mesh_options(command, *options);
     add_picture_options(command, *options);
-    add_output(
-        command, options->output, options->force,
-        "The picture to write: .png, or .exr for the densities themselves as floats, for other programs; without "
-        "it NAME.png beside the input");
+    add_output(command, options->output, options->force,
+               "The picture to write: .png, or .exr for the pdfs themselves as floats, for other programs; without "
+               "it NAME.png beside the input");
     add_quiet(command, options->quiet);
-    command.footer(
-        help_footer("Colours follow the logarithm of the density per steradian, from violet over green to red; "
-                    "dark grey is density "
-                    "0, where no sample ever falls. Each pixel shows the density of the direction at its centre.",
-                    "acdf plot sky.acdf\n"
-                    "acdf plot sky.exr -o full.png --projection angular --range 1e-3:100\n"
-                    "acdf plot local.acdf -o six.png\n"
-                    "acdf plot local.acdf -o up.png --normal 0,0,1 --range 1e-3:100\n"
-                    "acdf plot room.acdf -o floor.png --position 0.5,1,0 --normal 0,0,1\n"
-                    "acdf plot room.acdf -o cells.png --scene room.obj --from 4,-6,3 --to 0,0,1\n"
-                    "acdf plot nickel.acdf -o lobe.png --view 60\n"
-                    "acdf plot sky.acdf -o density.exr --width 4096"));
+    command.footer(help_footer(
+        "Colours follow the logarithm of the pdf per steradian, from violet over green to red; dark grey is a pdf "
+        "of 0, where no sample ever falls. Each pixel shows the pdf of the direction at its centre.",
+        "acdf plot sky.acdf\n"
+        "acdf plot sky.exr -o full.png --projection angular --range 1e-3:100\n"
+        "acdf plot local.acdf -o six.png\n"
+        "acdf plot local.acdf -o up.png --normal 0,0,1 --range 1e-3:100\n"
+        "acdf plot room.acdf -o floor.png --position 0.5,1,0 --normal 0,0,1\n"
+        "acdf plot room.acdf -o cells.png --scene room.obj --from 4,-6,3 --to 0,0,1\n"
+        "acdf plot nickel.acdf -o lobe.png --view 60\n"
+        "acdf plot sky.acdf -o density.exr --width 4096"));
     command.callback([options, &command, &exit_code] {
         if (options->output.empty()) options->output = output_names({options->file}, "", ".png")[0];
         check_mesh(command, *options);

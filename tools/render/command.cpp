@@ -335,13 +335,12 @@ void add_render(CLI::App& program, int& exit_code) {
     add_json(command, options->json);
     add_quiet(command, options->quiet);
     command.footer(help_footer(
-        "Writes the exact picture, and of each sampler a picture (EXR, PNG), its relative variance, its share of "
-        "samples above the horizon and its gain over the first sampler, pixel by pixel. The table has the relative "
-        "variance of an estimate, mean over pixels with its 95 % confidence interval and median, the noise of that "
-        "at 16, 64 and 256 samples, and the gain over the first sampler by equal samples and by equal time; it "
-        "says "
-        "where a baseline wins. Where a scene has objects that the camera does not "
-        "see, all is done again without anything in the way of light.",
+        "Writes the exact picture, and a picture of each sampler (EXR, PNG). Maps show a sampler's relative "
+        "variance, its share of samples above the horizon and its gain over the first sampler, pixel by pixel. The "
+        "table has the relative variance of an estimate: the mean over pixels with its 95 % confidence interval, "
+        "and the median. It also has the noise at 16, 64 and 256 samples, and the gain over the first sampler by "
+        "equal samples and by equal time. The table reports where a baseline wins. Where a scene has objects that "
+        "the camera does not see, all is measured again without occluders.",
         "acdf render --scene tools/render/scenes/demo.json -o out\n"
         "acdf render --scene tools/render/scenes/e4-grace.json --data ~/probes -o out --size 160x120\n"
         "acdf render --scene my.json -o out --sampler full-cdf --sampler 'mis(local:1MB,cosine)'\n"

@@ -250,7 +250,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
         ->option_text("NAME [by the source: env or brdf]")
         ->group("Sweep");
     options.scene.add(command,
-                      "For --kind visibility: the mesh (.obj, .ply, .instances) whose there are visibility cells",
+                      "For --kind visibility: the mesh (.obj, .ply, .instances) that the visibility cells are for",
                       "Sweep");
     comma_separated(command.add_option("--budgets", options.budgets, "Sizes to try, separated by commas"))
         ->option_text("SIZES [4KiB,16KiB,64KiB,256KiB,1MB for env]")

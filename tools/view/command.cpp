@@ -82,8 +82,7 @@ void run(const ViewArguments& options) {
 
 void add_view(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<ViewArguments>();
-    CLI::App& command =
-        *program.add_subcommand("view", "Show a file in the browser: density, cells, samples, figures");
+    CLI::App& command = *program.add_subcommand("view", "Show a file in the browser: pdf, cells, samples, figures");
     command.add_option("FILE", options->file, "An .acdf file (- is stdin)")
         ->required()
         ->type_name("")
