@@ -2,6 +2,7 @@
 // by a probe. Made for files of `acdf local PROBE --mis cosine`; others work, too. Usage: local_mis PROBE.pfm
 // FILE.acdf
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <algorithm>
 #include <cmath>

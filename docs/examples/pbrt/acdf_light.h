@@ -4,6 +4,7 @@
 
 #include <acdf/random.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <pbrt/base/bxdf.h>
 #include <pbrt/util/error.h>
