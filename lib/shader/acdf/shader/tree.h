@@ -17,7 +17,7 @@ extern "C" {
 
 /* ---- tables ----------------------------------------------------------------------------------------- */
 
-/* Words of the header; `link` is a node, or a leaf with its flag. Visibility are words from the start of the
+/* Words of the header; `link` is a node, or a leaf with its flag. Offsets are words from the start of the
  * tables. */
 #define ACDF_WALK_SIZE 0u        /* of all, in words */
 #define ACDF_WALK_OCTAHEDRAL 1u  /* 1: positions lie on the octahedral square, 0: on a lat-long grid */
