@@ -16,7 +16,7 @@ extern "C" {
 
 /* ---- tables of the fast shape ----------------------------------------------------------------------- */
 
-/* Words of its header, which follows that of acdf/shader/tree.h. Visibility are words from the start of the tables.
+/* Words of its header, which follows that of acdf/shader/tree.h. Offsets are words from the start of the tables.
  */
 #define ACDF_TILES_COLUMNS 32u /* of the grid of directions */
 #define ACDF_TILES_ROWS 33u
