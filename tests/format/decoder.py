@@ -283,7 +283,7 @@ FRESH += [["table", *options.split()] for options in (
     "field.npy --cells 600 --indexed 2 --names i,j,nm --range nm=730:380 --compress zlib")]
 
 
-FEATURES = {"halvings", "tilts", "links", "tiles", "roots of tiles", "trees of bins", "lights", "azimuths", "mirrored"}
+FEATURES = {"halvings", "tilts", "links", "tiles", "roots of tiles", "trees of bins", "bright tiles", "azimuths", "mirrored"}
 
 
 def features(view):
@@ -293,7 +293,7 @@ def features(view):
     uses = {"halvings": halved, "tilts": any(curve.tilts for curve in curves), "links": any(curve.links for curve in curves),
             "tiles": tiles is not None, "roots of tiles": tiles is not None and tiles.roots is not None,
             "trees of bins": isinstance(view, (Local, Brdf)) and tiles is None,
-            "lights": bool(getattr(view, "lights", None)), "azimuths": getattr(view, "F", 1) > 1,
+            "bright tiles": bool(getattr(view, "bright_tiles", None)), "azimuths": getattr(view, "F", 1) > 1,
             "mirrored": getattr(view, "mirrored", False)}
     return {name for name, there in uses.items() if there}
 

@@ -52,7 +52,7 @@ def code(text):
     return re.sub(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"", lambda m: "\n" * m.group(0).count("\n"), text, flags=re.S)
 
 
-CONSTANT = re.compile(r"\b(k[A-Z]\w*)\b")
+CONSTANT = re.compile(r"\b(?<!benchmark::)(k[A-Z]\w*)\b")
 DEFINED = re.compile(r"\bconst(?:expr)?\b[^;(){}=]*?\b(k[A-Z]\w*)\b|[,{]\s*(k[A-Z]\w*)\b(?=\s*(?:\[\w*\]\s*)?[=,}])")
 
 

@@ -69,6 +69,9 @@ compress::MovingShape shape_of(std::uint32_t width, std::uint32_t height, const 
 
 } // namespace
 
+// At least what the reader takes for an open file beside its nodes and its lookups.
+constexpr std::size_t kOpenFile = 4096;
+
 void open(Frame& frame, const AcdfAllocator& allocator) {
     LoadOptions options;
     options.allocator = allocator;
@@ -105,6 +108,7 @@ FastRebuild::FastRebuild(std::uint32_t width, std::uint32_t height, const Enviro
 void FastRebuild::reserve(Frame& frame) const {
     const std::size_t leaves = sizes_.back().leaves, squares = std::min<std::size_t>(leaves, 1 << 14);
     const std::size_t nodes = sizeof(AcdfHalving) * leaves, line = ACDF_ALIGNMENT;
+    frame.arena.reserve(kOpenFile);
     frame.arena.reserve(nodes + line);
     frame.arena.reserve(nodes + sizeof(AcdfHalvedTree) + sizeof(double) * (sums_.shape().rows + std::size_t{1}) +
                         2 * squares * (sizeof(AcdfStart) + sizeof(std::uint16_t)) + 8 * line);

@@ -52,7 +52,7 @@ private:
             if (block.data == data) block.taken = false;
     }
 
-    std::array<Block, 2> blocks_;
+    std::array<Block, 3> blocks_;
     std::size_t count_ = 0;
 };
 

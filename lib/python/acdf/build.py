@@ -53,7 +53,7 @@ def build_environment(
     uniform_if_black: bool = False,
     fit: str = "variance",
     max_weight: float = 0.0,
-    partner: Optional[str] = None,
+    mis: Optional[str] = None,
     heuristic: Optional[str] = None,
     shares: Tuple[float, float] = (1.0, 1.0),
     normals: Optional[Any] = None,
@@ -82,7 +82,7 @@ def build_environment(
         the largest value of its channel, and the others are 0; or "error".
     fit: "variance", "cdf", "pdf" or "uniform".
     max_weight: the largest weight of a sample over the mean, at least 1; 0: no bound.
-    partner, heuristic, shares, normals, normal_weights: the sampler that it is to be combined with, "none" (the default),
+    mis, heuristic, shares, normals, normal_weights: the sampler that it is to be combined with, "none" (the default),
         "cosine", "brdf" or "mean"; "balance" (the default) or "power"; samples of the file and of the partner, in proportion;
         the normals of the scene.
     compress: "none", "zlib" or "planes".
@@ -173,7 +173,7 @@ def build_local(
     cosine_share: float = 0.0,
     sharing: bool = True,
     shape: str = "auto",
-    partner: Optional[str] = None,
+    mis: Optional[str] = None,
     heuristic: Optional[str] = None,
     shares: Tuple[float, float] = (1.0, 1.0),
     compress: str = "none",

@@ -10,8 +10,11 @@ using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using ull = unsigned long long;
 
+// Those of an environment.
+constexpr u32 kAxes = 2;
+
 // The open ends of a tree are at most one a level of each axis, and one more.
-constexpr u32 most_open_nodes = 31 * ACDF_MAX_AXES + 1;
+constexpr u32 most_open_nodes = 31 * kAxes + 1;
 
 // Bits of whole words, the lowest of each byte first.
 class Bits {
@@ -37,8 +40,6 @@ private:
 
 u64 words_for(u64 bits) { return (bits + 31) / 32; }
 
-// `kAxes`: the most that are sampled.
-template <u32 kAxes>
 class HalvingsChecker {
 public:
     HalvingsChecker(const Payload& payload, Report& report, const Parts& parts)
@@ -160,11 +161,13 @@ private:
 
 } // namespace
 
-namespace {
-
-template <u32 kAxes>
-void make_halvings(const Payload& payload, Report& report, const AcdfAllocator& allocator, Parts& parts) {
-    HalvingsChecker<kAxes> checker(payload, report, parts);
+void check_halvings(const Payload& payload, Report& report, const AcdfAllocator& allocator, Parts& parts) noexcept {
+    if (payload.size < sizeof(AcdfHalvingsHeader)) {
+        report.add(6030, payload.at(0), "%llu bytes", static_cast<ull>(payload.size));
+        return;
+    }
+    if (parts.description->axis_count != kAxes) return; // check_environment reports it
+    HalvingsChecker checker(payload, report, parts);
     if (!checker.header_is_right()) return;
     const u32 count = reinterpret_cast<const AcdfHalvingsHeader*>(payload.data)->halving_count;
     const std::size_t bytes = (count + std::size_t{1}) * sizeof(AcdfHalving);
@@ -174,20 +177,6 @@ void make_halvings(const Payload& payload, Report& report, const AcdfAllocator& 
     parts.halvings = static_cast<AcdfHalving*>(parts.halvings_block.data);
     parts.halving_count = count;
     checker.make_nodes(parts.halvings);
-}
-
-} // namespace
-
-void check_halvings(const Payload& payload, Report& report, const AcdfAllocator& allocator, Parts& parts) noexcept {
-    if (payload.size < sizeof(AcdfHalvingsHeader)) {
-        report.add(6030, payload.at(0), "%llu bytes", static_cast<ull>(payload.size));
-        return;
-    }
-    u32 sampled = 0;
-    for (u32 axis = 0; axis < parts.description->axis_count; ++axis)
-        sampled += parts.axes[axis].role == ACDF_AXIS_SAMPLED;
-    if (sampled <= 2) make_halvings<2>(payload, report, allocator, parts);
-    else make_halvings<ACDF_MAX_AXES>(payload, report, allocator, parts);
 }
 
 } // namespace acdf

@@ -78,7 +78,8 @@ void check_bright_tiles(const Payload& payload, const TileBoxes& boxes, Report& 
                                 ? bright_tile_fault(light, boxes.of[light.tile])
                                 : "tile";
         if (fault)
-            report.add(7006, payload.at(sizeof(AcdfLocalHeader) + i * sizeof light), "light %u: its %s", i, fault);
+            report.add(7006, payload.at(sizeof(AcdfLocalHeader) + i * sizeof light), "bright tile %u: its %s", i,
+                       fault);
     }
 }
 
@@ -142,8 +143,8 @@ void check_bright_tile_rows(const Payload& payload, Report& report, const Parts&
         for (u32 b = 0; b < bins; ++b) {
             if (parts.bins[b].root >= parts.tiles->row_count || !(parts.bins[b].share > 0.0f)) continue;
             if (dark.in(parts.bins[b].root)) continue;
-            report.add(7007, payload.at(sizeof(AcdfLocalHeader) + i * sizeof(AcdfBrightTile)), "light %u in bin %u",
-                       i, b);
+            report.add(7007, payload.at(sizeof(AcdfLocalHeader) + i * sizeof(AcdfBrightTile)),
+                       "bright tile %u in bin %u", i, b);
             break;
         }
     }

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace {
@@ -69,7 +71,7 @@ const SurfaceInteraction vertex = {{0.2f, 0.1f, 0.5f}, {0.6f, 0.0f, -0.8f}, {-0.
 double expect_agreement(const ImageInfiniteLight& light, const LightSampleContext& context, bool incomplete) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> uniform;
-    const int count = 4000;
+    const int count = 40000;
     double solid_angle = 0.0;
     for (int i = 0; i < count; ++i) {
         const float u0 = uniform(random), u1 = uniform(random);

@@ -93,7 +93,7 @@ TEST(LocalFiles, FastOnesFillAndKeepTheirBudget) {
     options.goal = {Goal::Kind::variance, 0, 0, 4.0 * before};
     EXPECT_LE(build(options).accuracy.relative_variance, 4.0 * before);
     options.shape_from = build::ShapeFrom::request;
-    EXPECT_EQ(build::option_text("", options).rfind("--shape fast ", 0), 0u);
+    EXPECT_EQ(build::option_text("", options).rfind("--filter nearest --shape fast ", 0), 0u);
     options.goal = {Goal::Kind::cells, 4000, 0, 0.0};
     EXPECT_GT(load(build(options)).local().data().blend.tiles->tile_count, 10u);
 }
