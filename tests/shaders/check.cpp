@@ -87,7 +87,7 @@ int check(const acdf::File& file, std::size_t count, const std::string& folder, 
     const auto words = read_all<std::uint32_t>(folder + "/words.bin", 2 * count);
     const auto normals = read_all<float>(folder + "/normals.bin", 4 * count);
     const auto directions = read_all<float>(folder + "/directions.bin", 4 * count);
-    const auto draws = read_all<float>(folder + "/draws.bin", 4 * count);
+    const auto draws = read_all<float>(folder + "/samples.bin", 4 * count);
     const auto densities = read_all<float>(folder + "/densities.bin", 2 * count);
     Differences found;
     Reader reader(file);

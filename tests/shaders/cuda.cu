@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
     answer<<<static_cast<unsigned>((count + 127) / 128), 128>>>(tables, words, directions, normals, draws,
                                                                 densities, count);
     require(cudaDeviceSynchronize(), "kernel");
-    write(folder + "draws.bin", draws, count);
+    write(folder + "samples.bin", draws, count);
     write(folder + "densities.bin", densities, count);
     return 0;
 }

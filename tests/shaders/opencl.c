@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
     require(error, "densities");
     for (i = 0; i < 6; ++i) require(clSetKernelArg(kernel, i, sizeof(cl_mem), &buffers[i]), "argument");
     require(clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &count, NULL, 0, NULL, NULL), "run");
-    write_buffer(queue, buffers[4], 16 * count, folder, "draws.bin");
+    write_buffer(queue, buffers[4], 16 * count, folder, "samples.bin");
     write_buffer(queue, buffers[5], 8 * count, folder, "densities.bin");
     return 0;
 }

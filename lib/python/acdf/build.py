@@ -109,7 +109,7 @@ class EnvironmentRebuilder:
     Other options are those of build_environment. An object serves one call at a time.
 
     >>> import acdf, numpy as np
-    >>> sky = acdf.EnvironmentRebuilder(64, 32, budget="2KiB")
+    >>> sky = acdf.EnvironmentRebuilder(64, 32, budget="2KiB", filter="nearest")
     >>> image = np.ones((32, 64, 3), np.float32)
     >>> frame = sky.rebuild(image)
     >>> image[8, 20] = 500
