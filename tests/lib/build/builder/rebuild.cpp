@@ -17,6 +17,10 @@
     if (void* data = __real_malloc(size ? size : 1)) return data;
     throw std::bad_alloc();
 }
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    count(size);
+    return __real_malloc(size ? size : 1);
+}
 [[gnu::noinline]] void operator delete(void* data) noexcept { std::free(data); }
 [[gnu::noinline]] void operator delete(void* data, std::size_t) noexcept { std::free(data); }
 
