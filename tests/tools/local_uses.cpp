@@ -79,7 +79,8 @@ TEST_F(LocalCommands, InfoTellsWhatBinsShare) {
     EXPECT_EQ(report["axes"][2]["name"], "normal");
     EXPECT_EQ(report["axes"][2]["role"], "indexed");
     const std::string text = run_acdf({"info", shared}).out;
-    for (const char* part : {"local, format", "17 stored; 3 tiles shared by 5 rows, 1 bright tiles; cosine share 0.25"})
+    for (const char* part :
+         {"local, format", "17 stored; 3 tiles shared by 5 rows, 1 bright tiles; cosine share 0.25"})
         EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
@@ -101,7 +102,8 @@ TEST_F(LocalCommands, ValidateFindsWhatIsWrongWithRows) {
     const Result result = run_acdf({"validate", "-"}, bytes);
     EXPECT_EQ(result.code, 3);
     EXPECT_NE(result.out.find("error 4001"), std::string::npos) << result.out;
-    EXPECT_NE(result.out.find("error 7007 (bright-tile-row): bright tile 0 in bin 0"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("error 7007 (bright-tile-row): bright tile 0 in bin 0"), std::string::npos)
+        << result.out;
 }
 
 TEST_F(LocalCommands, SamplesAreThoseOfTheReader) {

@@ -51,7 +51,7 @@ void check_in_place(const Bytes& bytes) {
 TEST(Allocation, inPlaceOnlyTheScratchOfTheChecks) {
     const Bytes bytes = large().encode();
     check_in_place(bytes);
-    EXPECT_EQ(calls, 4u); // and what an open file is
+    EXPECT_EQ(calls, 4u);                           // and what an open file is
     EXPECT_LE(10 * bytes_taken, 21 * bytes.size()); // 8 bytes a curve, 12 a run of 64 units
 }
 
