@@ -28,7 +28,7 @@ check_fortified() { # FILE...
 if [[ $1 == --build ]]; then
     work=$2 source=$3
     rm -rf "$work"
-    cmake -S "$source" -B "$work" -G Ninja -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG" -DACDF_HARDEN=ON -DACDF_BUILD_ONCE=ON -DACDF_BUILD_TOOLS=OFF \
+    cmake -S "$source" -B "$work" -G Ninja -DCMAKE_BUILD_TYPE=Release -DACDF_HARDEN=ON -DACDF_BUILD_ONCE=ON -DACDF_BUILD_TOOLS=OFF \
         -DACDF_BUILD_TESTS=OFF -DACDF_BUILD_SHARED=ON -DCMAKE_C_COMPILER="$4" -DCMAKE_CXX_COMPILER="$5" >"$work.log" 2>&1 ||
         { cat "$work.log"; exit 1; }
     cmake --build "$work" --target acdf_reader_shared >>"$work.log" 2>&1 || { cat "$work.log"; exit 1; }
