@@ -1,14 +1,13 @@
 // docs/examples/pbrt: what pbrt would sample, in its own frame, with its own calls.
 #include "infinite_light.h"
+#include "tests/inputs/folder.h"
 
 #include <acdf/builder.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
+#include <cstdint>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -39,31 +38,35 @@ builder::Pixels octahedral(const std::vector<float>& rgb) {
     return pixels;
 }
 
-std::string written(const std::vector<std::uint8_t>& bytes, const char* name) {
-    const std::string path = (std::filesystem::temp_directory_path() / name).string();
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    return path;
-}
+class PbrtLight : public testing::Test {
+protected:
+    std::string environment_file(AcdfPartnerKind partner) const {
+        const std::vector<float> rgb = sky();
+        builder::EnvironmentOptions options;
+        options.mis.kind = partner;
+        builder::Environment made;
+        EXPECT_TRUE(builder::environment(octahedral(rgb), options, made).ok());
+        return written(made.bytes, "environment.acdf");
+    }
 
-std::string environment_file(AcdfPartnerKind partner, const char* name) {
-    const std::vector<float> rgb = sky();
-    builder::EnvironmentOptions options;
-    options.mis.kind = partner;
-    builder::Environment made;
-    EXPECT_TRUE(builder::environment(octahedral(rgb), options, made).ok());
-    return written(made.bytes, name);
-}
+    std::string local_file(AcdfPartnerKind partner) const {
+        const std::vector<float> rgb = sky();
+        builder::LocalOptions options;
+        options.goal = builder::Goal::of_budget(64 << 10);
+        options.mis.kind = partner;
+        builder::Local made;
+        EXPECT_TRUE(builder::local(octahedral(rgb), options, made).ok());
+        return written(made.bytes, "local.acdf");
+    }
 
-std::string local_file(AcdfPartnerKind partner, const char* name) {
-    const std::vector<float> rgb = sky();
-    builder::LocalOptions options;
-    options.goal = builder::Goal::of_budget(64 << 10);
-    options.mis.kind = partner;
-    builder::Local made;
-    EXPECT_TRUE(builder::local(octahedral(rgb), options, made).ok());
-    return written(made.bytes, name);
-}
+private:
+    std::string written(const std::vector<std::uint8_t>& bytes, const char* name) const {
+        acdf::test::write_text(folder_ / name, std::string(bytes.begin(), bytes.end()));
+        return folder_ / name;
+    }
+
+    const acdf::test::Folder folder_;
+};
 
 const SurfaceInteraction vertex = {{0.2f, 0.1f, 0.5f}, {0.6f, 0.0f, -0.8f}, {-0.6f, 0.0f, 0.8f}};
 
@@ -83,8 +86,8 @@ double expect_agreement(const ImageInfiniteLight& light, const LightSampleContex
     return solid_angle;
 }
 
-TEST(PbrtLight, SamplesAnEnvironmentAndBuildsNoTables) {
-    const ImageInfiniteLight light = create_infinite({environment_file(ACDF_PARTNER_NONE, "pbrt_env.acdf")}, {});
+TEST_F(PbrtLight, SamplesAnEnvironmentAndBuildsNoTables) {
+    const ImageInfiniteLight light = create_infinite({environment_file(ACDF_PARTNER_NONE)}, {});
     EXPECT_FALSE(light.has_tables);
     EXPECT_NEAR(expect_agreement(light, vertex, false), 4 * M_PI, 0.5);
     const std::optional<LightSample> ray = light.SampleLe({0.3f, 0.6f});
@@ -94,8 +97,8 @@ TEST(PbrtLight, SamplesAnEnvironmentAndBuildsNoTables) {
     EXPECT_NEAR(pdf / ray->pdf, 1.0, 1e-5);
 }
 
-TEST(PbrtLight, SamplesTheSideOfALocalFileThatTheViewerSees) {
-    const std::string path = local_file(ACDF_PARTNER_NONE, "pbrt_local.acdf");
+TEST_F(PbrtLight, SamplesTheSideOfALocalFileThatTheViewerSees) {
+    const std::string path = local_file(ACDF_PARTNER_NONE);
     const Transform transform = {{0.5f, 2.0f, -1.0f}};
     const ImageInfiniteLight light(transform, path);
     const Contexts contexts = contexts_of(vertex, {Reflection});
@@ -117,19 +120,18 @@ TEST(PbrtLight, SamplesTheSideOfALocalFileThatTheViewerSees) {
     EXPECT_NEAR(expect_agreement(light, both, true), 4 * M_PI, 0.5); // the whole environment
 }
 
-TEST(PbrtLight, LetsNoIntegratorUseAFileForMisAlone) {
-    const ImageInfiniteLight light =
-        create_infinite({environment_file(ACDF_PARTNER_MEAN, "pbrt_env_mis.acdf")}, {});
+TEST_F(PbrtLight, LetsNoIntegratorUseAFileForMisAlone) {
+    const ImageInfiniteLight light = create_infinite({environment_file(ACDF_PARTNER_MEAN)}, {});
     expect_agreement(light, vertex, true);
     EXPECT_THROW((void)light.SampleLi(vertex, {0.5f, 0.5f}, false), std::runtime_error);
     EXPECT_THROW((void)light.SampleLe({0.5f, 0.5f}), std::runtime_error);
     // A local file has its whole environment for them.
-    const ImageInfiniteLight local({}, local_file(ACDF_PARTNER_COSINE, "pbrt_local_mis.acdf"));
+    const ImageInfiniteLight local({}, local_file(ACDF_PARTNER_COSINE));
     expect_agreement(local, vertex, true);
     EXPECT_NEAR(expect_agreement(local, vertex, false), 4 * M_PI, 0.5);
 }
 
-TEST(PbrtLight, RefusesWhatIsNoLight) {
+TEST_F(PbrtLight, RefusesWhatIsNoLight) {
     EXPECT_THROW(create_infinite({"no_such_file.acdf"}, {}), std::runtime_error);
     EXPECT_TRUE(create_infinite({""}, {}).has_tables); // none is named: pbrt's own
 }
