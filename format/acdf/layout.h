@@ -245,7 +245,7 @@ typedef struct AcdfBrightTile {
 typedef struct AcdfPartner {
     uint32_t kind;                 /* AcdfPartnerKind, not 0 */
     uint32_t heuristic;            /* AcdfHeuristic */
-    float share;                   /* of the samples, in (0, 1): what the fit was told that this file samples */
+    float share;                   /* of the samples, in (0, 1): the share of this file that the fit assumed */
     float recommended_light_share; /* in (0, 1]: of the samples that this file should sample, in the mean */
     uint32_t record_count;
     uint32_t reserved; /* 0 */

@@ -80,7 +80,7 @@ ACDF_LANE Vector heights_of(const AcdfLocal& local, const FastBoxes& box, Vector
     return z[0] - z[1];
 }
 
-/* acdf_local_fast_cell_pdf of a vector of cells of such heights; ends: as ends_at tells them on each axis. */
+/* acdf_local_fast_cell_pdf of a vector of cells of such heights; ends: as ends_at returns them on each axis. */
 ACDF_LANE Vector fast_density(const AcdfLocal& local, const FastCells& c, const Ints ends[2], const FastBoxes& box,
                               Vector height, std::size_t at) {
     Ints before[2], end[2];

@@ -61,7 +61,7 @@ ACDF_LANE void begin_draws(const Vector u[2], std::size_t at, FastDraws* d) {
     d->lit |= (std::uint64_t)bits(is_lit) << at;
 }
 
-/* acdf_local_fast_bright_tile of the lanes that draw bright tiles. Returns those that it does not tell: next to
+/* acdf_local_fast_bright_tile of the lanes that sample bright tiles. Returns those that it does not decide: next to
  * borders. */
 template <class At>
 ACDF_LANE std::uint64_t draw_lights(const AcdfLocal& local, const At& at, FastDraws* d) {

@@ -1,4 +1,4 @@
-// Arrays of draws and densities in blocks of lanes, with a normal each or at one point: what LocalBatch's loops
+// Arrays of samples and pdfs in blocks of lanes, with a normal each or at one point: what LocalBatch's loops
 // of both shapes share. Internal linkage: see local_kernel.h.
 #pragma once
 

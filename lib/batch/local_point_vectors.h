@@ -48,7 +48,7 @@ ACDF_LANE const AcdfFacet& facet_at(const AcdfLocal& local, long long byte) {
     return *(const AcdfFacet*)(const void*)((const char*)(const void*)acdf_local_facets(local.tables) + byte);
 }
 
-/// What facets of lanes tell of their bright tiles.
+/// What facets of lanes store of their bright tiles.
 struct Facets {
     Vector whole;      // acdf_facet_whole
     Integer others;    // in the lower halves, AcdfFacet::others

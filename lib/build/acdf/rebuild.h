@@ -13,14 +13,13 @@
 //     }
 //
 // Two changes need no rebuild:
-// - Scale. Where all light gets brighter by a factor, no pdf changes. Multiply what total() returns by the
-// factor
-//   where you choose between lights:
+// - Scale. Where all light gets brighter by a factor, no pdf changes. Multiply total() by the factor where you
+//   choose between lights:
 //
 //       const double power = factor * sky.view().total();
 //
 // - Rotation. Turn directions instead: those that are sampled from the map to the scene, and those that pdf() gets
-//   from the scene to the map, by the inverse rotation. Densities per steradian stay what they are:
+//   from the scene to the map, by the inverse rotation. A pdf per steradian does not change:
 //
 //       const acdf::DirectionSample s = sky.view().sample(u0, u1);
 //       const Vector to_light = rotate(s.direction);                 // its pdf is s.pdf

@@ -34,7 +34,7 @@ struct LocalSize {
     WholeTree whole =
         WholeTree::of_tiles;           ///< of the fast shape, and beside an MIS partner, it has curves of its own
     std::uint64_t whole_bytes = 16384; ///< of those, at most
-    /// What weights are held to, over their mean, as far as bins tell; not beside an MIS partner.
+    /// The largest weight over the mean, as far as bins show it; not beside an MIS partner.
     double max_weight = std::numeric_limits<double>::infinity();
 };
 
@@ -98,7 +98,7 @@ private:
     const double total_; ///< the integral of the target
     const Progress progress_;
     std::optional<LocalPartner> beside_;
-    Target filled_; ///< what is left of the target beside an MIS partner
+    Target filled_; ///< the rest of the target, beside an MIS partner
     TileTree tiles_;
     BrightTileRule rule_;
     std::vector<double> worth_of_tiles_;

@@ -47,8 +47,8 @@ private:
 
 } // namespace
 
-// Between codes for p and q: a^2 / p + b^2 / (1 - p) is the same for both where (a / b)^2 is p q / ((1 - p) (1 -
-// q)).
+// Between codes for p and q: a^2 / p + b^2 / (1 - p) is the same for both where (a / b)^2 is
+// p q / ((1 - p) (1 - q)).
 ShareCodes::ShareCodes(std::uint32_t bits)
     : bits_(bits), shares_(std::size_t{1} << bits),
       borders_(shares_.size(), std::numeric_limits<double>::infinity()), guesses_(kGuesses) {

@@ -1,4 +1,4 @@
-// What cells of visibility tell of portals: how much of each piece is seen, and what comes in another way.
+// What visibility cells store of portals: how much of each piece is seen, and what comes in another way.
 #pragma once
 
 #include "compress/store/store.h"

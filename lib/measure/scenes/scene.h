@@ -72,7 +72,7 @@ struct Camera {
     Ray ray(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height) const;
 };
 
-/// A rectangle that light comes through, told for samplers of portals alone: nothing is sampled there.
+/// A rectangle that light comes through, for samplers of portals alone: it has no surface.
 struct Portal {
     Vec3 corner{}, across{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0}; ///< two sides at right angles; light comes from the
                                                              ///< side that across x up points to

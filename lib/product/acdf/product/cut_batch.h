@@ -49,7 +49,7 @@ ACDF_INLINE void acdf_cut_batch_parts(const AcdfCut* cut, const double (*u)[2], 
     for (i = 0; i < count; ++i) lane[i].part = acdf_cut_sample_guessed(cut, guess[i], lane[i].u);
 }
 
-/* Samples bright tiles, and tells which lanes sample from the mixture of their part. */
+/* Samples bright tiles, and returns which lanes sample from the mixture of their part. */
 ACDF_INLINE void acdf_cut_batch_lights(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                        uint32_t count, AcdfCutLane* lane, AcdfCutLanes* mixed) {
     uint32_t i, k;
