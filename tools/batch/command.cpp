@@ -97,10 +97,11 @@ BatchLimits limits_of(const BatchArguments& options) {
         const auto bytes = parse_size(options.memory);
         if (!bytes) throw CLI::ValidationError("--memory", "needs a size such as 8GiB");
         limits.memory = *bytes;
-        return limits;
+    } else {
+        const std::uint64_t available = available_memory();
+        limits.memory = available > 0 ? available / 4 * 3 : std::numeric_limits<std::uint64_t>::max();
     }
-    const std::uint64_t available = available_memory();
-    limits.memory = available > 0 ? available / 4 * 3 : std::numeric_limits<std::uint64_t>::max();
+    keep_within_address_space(limits);
     return limits;
 }
 

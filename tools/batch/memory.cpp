@@ -7,6 +7,9 @@
 #include <sstream>
 #include <string>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 namespace acdf::tools {
 namespace {
 
@@ -57,11 +60,34 @@ std::uint64_t control_group_memory() {
     return least;
 }
 
+/// Address space that `ulimit -v` leaves this process.
+std::uint64_t address_space() {
+    rlimit limit = {};
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unknown;
+    const std::uint64_t pages = read_number("/proc/self/statm"); // of address space in use: the first number
+    const std::uint64_t used = pages == unknown ? 0 : pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+    return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
+}
+
+constexpr std::uint64_t mib = std::uint64_t{1} << 20;
+constexpr std::uint64_t of_a_thread = 72 * mib;    // its stack, and the heap that glibc reserves for it
+constexpr std::uint64_t of_the_program = 48 * mib; // modules that read images, and what is not estimated
+
 } // namespace
 
 std::uint64_t available_memory() {
     const std::uint64_t least = std::min(machine_memory(), control_group_memory());
     return least == unknown ? 0 : least;
+}
+
+void keep_within_address_space(BatchLimits& limits) {
+    const std::uint64_t space = address_space();
+    if (space == unknown) return;
+    const auto threads = static_cast<int>(std::clamp<std::uint64_t>(space / 4 / of_a_thread, 1, 4096));
+    limits.threads = std::min(limits.threads, threads);
+    limits.workers = std::min(limits.workers, threads);
+    const std::uint64_t used = static_cast<std::uint64_t>(limits.threads) * of_a_thread + of_the_program;
+    limits.memory = std::min(limits.memory, space > used ? space - used : 0);
 }
 
 } // namespace acdf::tools

@@ -220,15 +220,21 @@ TEST_F(BatchCommand, RemarksAreInReports) {
 TEST_F(BatchCommand, RunningOutOfMemoryIsAFailureLikeOthers) {
     if (acdf_test::kSanitized) GTEST_SKIP() << "sanitizers reserve all address space";
     write_small_probes(probes, 2, 16);
-    for (int kib = 40000; kib < 100000; kib += 2000)
-        for (const char* threads : {"1", "2", "8"}) {
-            const std::string run = "ulimit -c 0; ulimit -v " + std::to_string(kib) + "; '" + acdf_test::kProgram +
-                                    "' batch '" + probes + "' -o '" + out + "' -f -q --threads " + threads +
-                                    " >/dev/null 2>'" + (folder / "err") + "'";
+    std::vector<int> sizes; // of address space, in KiB
+    for (int kib = 40000; kib < 100000; kib += 3000) sizes.push_back(kib);
+    for (int kib = 100000; kib <= 1000000; kib += 100000) sizes.push_back(kib);
+    for (const int kib : sizes)
+        for (const char* threads : {"1", "8"}) {
+            const std::string run = "ulimit -c 0; ulimit -v " + std::to_string(kib) + "; exec timeout 60 '" +
+                                    acdf_test::kProgram + "' batch '" + probes + "' -o '" + out +
+                                    "' -f -q --threads " + threads + " >/dev/null 2>'" + (folder / "err") + "'";
             const int status = std::system(run.c_str());
             ASSERT_TRUE(WIFEXITED(status)) << run;
             const int code = WEXITSTATUS(status); // 127: not even the program's own libraries are loaded
             EXPECT_TRUE(code <= 1 || code == 127) << code << ": " << run << ": " << read_text(folder / "err");
+            if (kib >= 500000) {
+                EXPECT_EQ(code, 0) << run << ": " << read_text(folder / "err");
+            }
         }
 }
 
