@@ -55,7 +55,7 @@ noise() {
     awk -v full="$full" -v mine="$local" '
         $0 == "<!-- noise -->" {
             print
-            printf "**%.1f times less variance: %s instead of %s.**\n", full / mine, mine, full
+            printf "**The acdf file, which uses the normal, has %.1f times less variance than the CDF: %s instead of %s.**\n", full / mine, mine, full
             inside = 1
             next
         }
