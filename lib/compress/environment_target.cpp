@@ -3,6 +3,7 @@
 #include "compress/row_nodes.h"
 #include "compress/sum.h"
 #include "compress/target.h"
+#include "compress/widths.h"
 
 #include <acdf/sample.h>
 
@@ -28,68 +29,95 @@ struct Integrand {
     }
 };
 
-/// Means of f and f^2 over a texel, and the largest f in it.
-struct TexelMoments {
-    double mean = 0.0, square = 0.0, peak = 0.0;
-};
+/// Of each texel of a row: means of f and f^2, and the largest f.
+struct RowMoments {
+    std::vector<double> mean, square, peak;
 
-/// A row of texels with one more at each end and none missing above the first and below the last: what the probe
-/// shows on. Across the seam that is the other end of the row, at a pole the row itself; across a side of the
-/// octahedral square it is the texel that mirrors it at the middle of the side.
-struct PaddedRow {
-    const float* values;
-    float before, after;
-    bool mirrored; ///< `values` run from the last column to the first
-
-    float at(std::uint32_t column, std::uint32_t columns) const {
-        return values[mirrored ? columns - 1 - column : column];
+    void clear(std::size_t columns) {
+        for (std::vector<double>* of : {&mean, &square, &peak}) of->assign(columns, 0.0);
     }
 };
 
-PaddedRow padded_row(const Integrand& f, std::size_t plane, std::int64_t r) {
+/// A row of texels with one more at each end: the texels that the map shows there. Across the seam that is the
+/// other end of the row; across a side of the octahedral square it is the texel that mirrors it at the middle of
+/// the side. Rows above the first and below the last are those that the map shows there: at a pole the row itself.
+using PaddedRow = std::vector<float>;
+
+void pad_row(const Integrand& f, std::size_t plane, std::int64_t r, PaddedRow& out) {
     const std::int64_t last = std::int64_t{f.rows} - 1;
     const bool outside = r < 0 || r > last;
     const auto row = static_cast<std::uint32_t>(std::clamp(r, std::int64_t{0}, last));
     const float* values = f.row(plane, row);
-    if (!f.octahedral) return {values, values[f.columns - 1], values[0], false};
-    const float* other = f.row(plane, f.rows - 1 - row);
-    const float first = other[0], end = other[f.columns - 1];
-    return outside ? PaddedRow{values, end, first, true} : PaddedRow{values, first, end, false};
+    out.resize(f.columns + std::size_t{2});
+    if (f.octahedral && outside) std::reverse_copy(values, values + f.columns, out.begin() + 1);
+    else std::copy_n(values, f.columns, out.begin() + 1);
+    const float* ends = f.octahedral ? f.row(plane, f.rows - 1 - row) : values;
+    const bool same_side = f.octahedral && !outside;
+    out.front() = ends[same_side ? 0 : f.columns - 1];
+    out.back() = ends[same_side ? f.columns - 1 : 0];
 }
 
-/// Moments of bilinear interpolation over the texels of a row. Along the row they are exact: between neighbouring
-/// centres f is linear, so the mean of f^2 over half a texel from x to y is (x^2 + xy + y^2) / 3.
-void bilinear_row(const Integrand& f, std::size_t plane, std::uint32_t r, std::vector<TexelMoments>& out) {
-    const PaddedRow above = padded_row(f, plane, std::int64_t{r} - 1), own = padded_row(f, plane, r),
-                    below = padded_row(f, plane, std::int64_t{r} + 1);
-    out.assign(f.columns, TexelMoments{});
-    const auto add = [&](double height, double weight) {
-        const bool upper = height < 0.5;
-        const PaddedRow &a = upper ? above : own, &b = upper ? own : below;
-        const double share = upper ? height + 0.5 : height - 0.5;
-        const auto blend = [&](float of_a, float of_b) { return of_a * (1.0 - share) + of_b * share; };
-        const auto column = [&](std::uint32_t c) { return blend(a.at(c, f.columns), b.at(c, f.columns)); };
-        double left = blend(a.before, b.before), centre = column(0);
-        for (std::uint32_t c = 0; c < f.columns; ++c) {
-            const double right = c + 1 < f.columns ? column(c + 1) : blend(a.after, b.after);
-            const double x = 0.5 * (left + centre), y = 0.5 * (centre + right);
-            out[c].mean += weight * (0.25 * x + 0.5 * centre + 0.25 * y);
-            out[c].square +=
-                weight * ((x * x + x * centre + centre * centre) + (centre * centre + centre * y + y * y)) / 6.0;
-            out[c].peak = std::max({out[c].peak, x, centre, y});
-            left = centre;
-            centre = right;
+/// out = a (1 - share) + b share.
+ACDF_WIDTHS void blend(const float* a, const float* b, double share, std::size_t count, double* out) {
+    const double rest = 1.0 - share;
+    for (std::size_t i = 0; i < count; ++i) out[i] = double{a[i]} * rest + double{b[i]} * share;
+}
+
+/// Adds moments along a line of bilinear interpolation: between neighbouring centres f is linear, so the mean of
+/// f^2 over half a texel from x to y is (x^2 + xy + y^2) / 3. line[0] is the texel before the first.
+ACDF_WIDTHS void add_moments(const double* line, std::size_t count, double weight, double* mean, double* square) {
+    for (std::size_t c = 0; c < count; ++c) {
+        const double centre = line[c + 1], x = 0.5 * (line[c] + centre), y = 0.5 * (centre + line[c + 2]);
+        mean[c] += weight * (0.25 * x + 0.5 * centre + 0.25 * y);
+        square[c] +=
+            weight * ((x * x + x * centre + centre * centre) + (centre * centre + centre * y + y * y)) / 6.0;
+    }
+}
+
+ACDF_WIDTHS void raise_peaks(const double* line, std::size_t count, double* peak) {
+    for (std::size_t c = 0; c < count; ++c) {
+        const double centre = line[c + 1], x = 0.5 * (line[c] + centre), y = 0.5 * (centre + line[c + 2]);
+        const double ends = x > y ? x : y, here = centre > ends ? centre : ends;
+        peak[c] = here > peak[c] ? here : peak[c];
+    }
+}
+
+/// Moments of bilinear interpolation over the texels of a row, exact along the row.
+class BilinearRows {
+public:
+    explicit BilinearRows(const Integrand& f) : f_(f), line_(f.columns + std::size_t{2}) {}
+
+    void add(std::size_t plane, std::uint32_t r, RowMoments& out) {
+        for (std::size_t k = 0; k < 3; ++k) pad_row(f_, plane, std::int64_t{r} + std::int64_t(k) - 1, rows_[k]);
+        out.clear(f_.columns);
+        for (const RowNode& node : row_nodes(f_.octahedral, f_.rows, r)) {
+            form_line(node.height);
+            add_moments(line_.data(), f_.columns, node.weight, out.mean.data(), out.square.data());
         }
-    };
-    for (const RowNode& node : row_nodes(f.octahedral, f.rows, r)) add(node.height, node.weight);
-    for (double height : {0.0, 0.5, 1.0}) add(height, 0.0); // f is largest at a corner of a quarter of the texel
-}
+        for (const double height : {0.0, 0.5, 1.0}) { // f is largest at a corner of a quarter of the texel
+            form_line(height);
+            raise_peaks(line_.data(), f_.columns, out.peak.data());
+        }
+    }
 
-void nearest_row(const Integrand& f, std::size_t plane, std::uint32_t r, std::vector<TexelMoments>& out) {
+private:
+    void form_line(double height) {
+        const std::size_t upper = height < 0.5 ? 0 : 1;
+        blend(rows_[upper].data(), rows_[upper + 1].data(), upper == 0 ? height + 0.5 : height - 0.5, line_.size(),
+              line_.data());
+    }
+
+    const Integrand& f_;
+    std::array<PaddedRow, 3> rows_; ///< above, the row itself, below
+    std::vector<double> line_;
+};
+
+void nearest_row(const Integrand& f, std::size_t plane, std::uint32_t r, RowMoments& out) {
     const float* row = f.row(plane, r);
     for (std::uint32_t c = 0; c < f.columns; ++c) {
         const double value = row[c];
-        out[c] = {value, value * value, value};
+        out.mean[c] = out.peak[c] = value;
+        out.square[c] = value * value;
     }
 }
 
@@ -210,16 +238,18 @@ Target EnvironmentTarget::moments() {
     target.means.assign(planes_, std::vector<float>(target.values.size()));
     std::vector<std::array<double, kChannels>> row_total(rows_);
     parallel_for(std::uint32_t{0}, rows_, [&](std::uint32_t r) {
-        std::vector<TexelMoments> moments(columns_);
+        RowMoments moments;
+        moments.clear(columns_);
+        BilinearRows rows(f);
         std::vector<double> square(columns_, 0.0), peak(columns_, 0.0);
         for (std::size_t plane = 0; plane < planes_; ++plane) {
-            bilinear ? bilinear_row(f, plane, r, moments) : nearest_row(f, plane, r, moments);
+            bilinear ? rows.add(plane, r, moments) : nearest_row(f, plane, r, moments);
             Sum sum;
             for (std::uint32_t c = 0; c < columns_; ++c) {
-                sum.add(moments[c].mean * target.column_measure[c]);
-                target.means[plane][std::size_t{r} * columns_ + c] = static_cast<float>(moments[c].mean);
-                square[c] += moments[c].square;
-                peak[c] = std::max(peak[c], moments[c].peak);
+                sum.add(moments.mean[c] * target.column_measure[c]);
+                target.means[plane][std::size_t{r} * columns_ + c] = static_cast<float>(moments.mean[c]);
+                square[c] += moments.square[c];
+                peak[c] = std::max(peak[c], moments.peak[c]);
             }
             row_total[r][plane] = sum.value() * target.row_measure[r];
         }

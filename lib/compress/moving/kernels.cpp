@@ -1,15 +1,10 @@
 #include "compress/moving/kernels.h"
 
+#include "compress/widths.h"
+
 #include <algorithm>
 #include <cstring>
 #include <limits>
-
-#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GLIBC__) && defined(__GNUC__) &&                    \
-    !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define ACDF_WIDTHS __attribute__((target_clones("avx2", "default")))
-#else
-#define ACDF_WIDTHS
-#endif
 
 namespace acdf::compress {
 namespace {
