@@ -110,7 +110,7 @@ plot() {
 equal_time() {
     local scene=$1 options=() shown=() one points made drawn budget='' i=0 samples
     shift
-    local common=(render --scene "$results/$scene.json" --data "$data" --size 240x180 --sequence independent --no-reference --seeds 2
+    local common=(render --scene "$results/$scene.json" --data "$data" --size 320x240 --sequence independent --no-reference --seeds 3
                   --quiet --force)
     for one in "$@"; do options+=(--sampler "${one%=*}"); done
     "$acdf" "${common[@]}" --samples 16 -o "$work/timed" "${options[@]}" > /dev/null
