@@ -57,7 +57,7 @@ function direction(left, top) {
     return [Math.sin(theta) * Math.cos(phi), Math.sin(theta) * Math.sin(phi), Math.cos(theta)];
 }
 
-// The direction that the equal-area octahedral square shows at (u, v): SPEC.md 6.9.
+// The direction that the equal-area octahedral square shows at (u, v): SPEC.md 6.6.
 function octahedral(u, v) {
     const a = Math.abs(2 * u - 1), b = Math.abs(2 * v - 1), beyond = a + b - 1, r = 1 - Math.abs(beyond);
     const phi = Math.PI / 4 * (r > 0 ? 1 + (b - a) / r : 1), sine = r * Math.sqrt(2 - r * r);

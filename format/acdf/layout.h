@@ -33,10 +33,10 @@ typedef enum AcdfKind {
 typedef enum AcdfCodec {
     ACDF_CODEC_NONE = 0,
     ACDF_CODEC_ZLIB = 1,
-    ACDF_CODEC_PLANES = 2 /* zlib, and for TREE alone: its planes (SPEC.md §4) */
+    ACDF_CODEC_PLANES = 2 /* zlib, and for TREE alone: its planes (SPEC.md §7.4) */
 } AcdfCodec;
 
-/* How sampled coordinates become directions (SPEC.md §6). */
+/* How sampled coordinates become directions (SPEC.md §2.1). */
 typedef enum AcdfParameterization {
     ACDF_PARAM_LATLONG = 1,    /* columns in phi, rows in theta; density uniform in z = cos(theta) */
     ACDF_PARAM_HALF_ANGLE = 2, /* reserved for BRDFs */
@@ -63,7 +63,7 @@ typedef enum AcdfAxisMeasure {
     ACDF_MEASURE_COSINE = 1  /* cos of that: positions are equal steps of an angle */
 } AcdfAxisMeasure;
 
-/* What a file was made to be combined with, by multiple importance sampling (SPEC.md §5.8). */
+/* What a file was made to be combined with, by multiple importance sampling (SPEC.md §5.4). */
 typedef enum AcdfPartnerKind {
     ACDF_PARTNER_NONE = 0,
     ACDF_PARTNER_COSINE = 1, /* cos / pi around the normal */
@@ -151,7 +151,7 @@ typedef struct AcdfBin {
 } AcdfBin;
 
 #ifndef ACDF_ENVIRONMENT_ONLY
-/* Chunk TREE: curves, packed one after the other, each a whole number of 16-bit units (SPEC.md §5.4):
+/* Chunk TREE: curves, packed one after the other, each a whole number of 16-bit units (SPEC.md §7.2):
  *   uint16 header; [uint32 segments, as two uint16]; cumulative[n-1]; positions[n-1]; links[n] (if any);
  *   tilts[n] (if any); zero padding. Each array starts at the next multiple of its element's size. */
 #define ACDF_CURVE_AXIS_MASK 0x0007u
@@ -163,7 +163,7 @@ typedef struct AcdfBin {
 #define ACDF_CURVE_SHORT_SEGMENTS 63u
 #endif
 
-/* Chunk HALV: a tree of halvings (SPEC.md §5.12), instead of BINS and TREE. This, then two runs of bits, the lowest
+/* Chunk HALV: a tree of halvings (SPEC.md §6.2), instead of BINS and TREE. This, then two runs of bits, the lowest
  * of each byte first, each padded with zeros to a multiple of 32: the nodes in preorder, 0 for a leaf, else 1 and
  * the number of a sampled axis; then `code_bits` a halving, in the same order. */
 typedef struct AcdfHalvingsHeader {
@@ -176,7 +176,7 @@ typedef struct AcdfHalvingsHeader {
 #define ACDF_MOST_HALVINGS 0x7FFFFFFu /* 2^27 - 1 */
 
 #ifndef ACDF_ENVIRONMENT_ONLY
-/* The streams of codec 2 (SPEC.md §4). Where there are several sizes, the stream of the smallest is named. */
+/* The streams of codec 2 (SPEC.md §7.4). Where there are several sizes, the stream of the smallest is named. */
 enum {
     ACDF_PLANE_HEADERS = 0,
     ACDF_PLANE_SEGMENTS = 1,
@@ -196,7 +196,7 @@ typedef struct AcdfPlanes {
     uint32_t count[ACDF_PLANE_STREAMS]; /* of values in each stream */
 } AcdfPlanes;
 
-/* Chunk TILE: what bins share (SPEC.md §5.6): this, then tiles - 1 splits, then `root_count` (0 or `tiles`) uint32
+/* Chunk TILE: what bins share (SPEC.md §9): this, then tiles - 1 splits, then `root_count` (0 or `tiles`) uint32
  * offsets in TREE, in units, of the tree within each tile; ACDF_NO_ROOT where a tile is a cell. */
 typedef struct AcdfTiles {
     uint32_t tile_count;    /* 1 to ACDF_MAX_TILES */
@@ -215,7 +215,7 @@ typedef struct AcdfSplit {
 /* Chunk ROWS: row_count rows of tile_count - 1 bytes: codebook[code] / 65535 is the probability of a split's lower
  * part.
  *
- * Chunks SUMS and GRID, of the fast shape of local environments, instead (SPEC.md §5.11): `roots` are then offsets
+ * Chunks SUMS and GRID, of the fast shape of local environments, instead (SPEC.md §10.6): `roots` are then offsets
  * in GRID, in bytes. SUMS: for each row cumulative uint16 over groups of tiles, as many as these rounded up to 16;
  * then for each row cumulative uint8 over the tiles of each group. GRID: for each tile two shifts, and the
  * cumulative uint8 of its cells; ACDF_FAST_CELLS bytes more, so that vectors may read on. */
@@ -230,7 +230,7 @@ typedef struct AcdfLocalHeader {
     uint32_t bright_tile_count;
 } AcdfLocalHeader;
 
-/* A tile so small and bright that its weight is worked out for each normal (SPEC.md §6.7). */
+/* A tile so small and bright that its weight is worked out for each normal (SPEC.md §10.1). */
 typedef struct AcdfBrightTile {
     float direction[3]; /* unit, to its middle */
     float radius;       /* no point of it is farther from `direction`, > 0 */
@@ -257,7 +257,7 @@ typedef struct AcdfPartnerRecord {
 } AcdfPartnerRecord;
 
 #ifndef ACDF_ENVIRONMENT_ONLY
-/* Chunk PLAC, of local environments: what of the light reaches a position (SPEC.md §5.9). This, then `split_count`
+/* Chunk PLAC, of local environments: what of the light reaches a position (SPEC.md §12.1). This, then `split_count`
  * splits, then 1 + `further_sets` sets of columns, a uint16 for each split of TILE, its column in a row or
  * ACDF_NO_COLUMN, then, where there are further sets, a uint16 for each row, its set, then `row_count` rows of
  * 1 + bright tiles + `column_count` bytes: codes of visibility of the mixture and of each light, and of odds. */
@@ -284,7 +284,7 @@ typedef struct AcdfVisibilitySplit {
 #define ACDF_VISIBILITY_ROW 0x10000000u
 #define ACDF_MAX_VISIBILITY_DEPTH 64u /* on a path */
 
-/* Chunk PORT, of local environments with PLAC: rectangles that light comes through (SPEC.md §5.10). This, then
+/* Chunk PORT, of local environments with PLAC: rectangles that light comes through (SPEC.md §13.1). This, then
  * `portal_count` portals, then `map_count` maps, then for each map (`size` + 1)^2 uint32, its light below and left
  * of each corner of its cells, then for each row of PLAC 1 + `portal_count` * `pieces`^2 bytes: the share of the
  * row itself, and codes of visibility of the pieces of each portal. */
@@ -319,7 +319,7 @@ typedef struct AcdfPortalMap {
 #define ACDF_MAX_SPLITS_DEEP 48u /* on a path, so that no product of weights underflows */
 #define ACDF_MAX_BRIGHT_TILES 64u
 
-/* Chunk VIEW of a BRDF (SPEC.md §6.8): this, then `theta_count` f32, sqrt(1 - cos(theta_o)) of the stored views. */
+/* Chunk VIEW of a BRDF (SPEC.md §11): this, then `theta_count` f32, sqrt(1 - cos(theta_o)) of the stored views. */
 typedef struct AcdfViews {
     uint32_t theta_count;
     uint32_t phi_count;  /* 1: isotropic */

@@ -1,4 +1,4 @@
-"""SPEC.md §6.8: BRDFs."""
+"""SPEC.md §11: BRDFs."""
 import math
 import struct
 

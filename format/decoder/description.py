@@ -1,4 +1,4 @@
-"""SPEC.md §5.1 to §5.3 and §5.5: what a file says of itself, and what its kind asks of that."""
+"""SPEC.md §5.1 to §5.3 and §7.1: what a file says of itself, and what its kind asks of that."""
 import math
 import struct
 
@@ -60,7 +60,7 @@ def read_description(container):
 
 
 def read_bins(payloads, count):
-    """§5.3. A file with HALV has none."""
+    """§7.1. A file with HALV has none."""
     if b"HALV" in payloads:
         return None
     require(len(payloads[b"BINS"]) == 8 * count, 4004)
@@ -83,7 +83,7 @@ def check_axes(axes):
 
 
 def check_metadata(data):
-    """§5.5."""
+    """§5.3."""
     if data is None:
         return
     require(len(data) >= 4, 5017)
@@ -108,7 +108,7 @@ def is_axis(axis, name, role, measure, low, high, most):
 
 
 def check_sphere_axes(d):
-    """§6.1 and §6.9, also of local environments."""
+    """§6.1 and §6.6, also of local environments."""
     if d.parameterization == 4:
         require(is_axis(d.axes[0], b"u", 0, 0, 0.0, 1.0, 65536), 7001)
         require(is_axis(d.axes[1], b"v", 0, 0, 0.0, 1.0, 65536), 7001)
@@ -125,7 +125,7 @@ def check_environment(d):
 
 
 def check_table(d, weights):
-    """§6.6."""
+    """§8."""
     indexed = [axis for axis in d.axes if axis.role == 1]
     for axis in d.axes:
         require(axis.measure == 0, 9001)

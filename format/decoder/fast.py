@@ -1,4 +1,4 @@
-"""SPEC.md §5.11 and §6.13: the fast shape of local environments."""
+"""SPEC.md §10.6: the fast shape of local environments."""
 import math
 
 import numpy as np

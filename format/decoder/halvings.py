@@ -1,4 +1,4 @@
-"""SPEC.md §5.12, and what §6.2, §6.3 and §6.5 say of trees of halvings."""
+"""SPEC.md §6.2, and what §6.3, §6.4 and §6.5 say of trees of halvings."""
 import math
 import struct
 
@@ -117,7 +117,7 @@ class Halvings:
         return node
 
     def draw(self, _root, u, box, _s):
-        """§6.2. Returns p."""
+        """§6.3. Returns p."""
         step = [min(math.floor(v * STEPS), STEPS - 1) for v in u]
         leaf = self.leaf(lambda node: step[node.axis] >= node.halves[1].steps[node.axis][0])
         for a, (low, high) in enumerate(leaf.steps):
@@ -126,7 +126,7 @@ class Halvings:
         return leaf.probability()
 
     def find(self, _root, square, box, _s, strata=None):
-        """§6.3. Returns p, 0 where no sample can fall."""
+        """§6.4. Returns p, 0 where no sample can fall."""
         leaf = self.leaf(lambda node: square[node.axis] >= node.halves[1].box[node.axis][0])
         box[:] = leaf.box
         if strata is not None:

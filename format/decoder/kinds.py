@@ -50,7 +50,7 @@ def sampler_of(container, d):
 
 
 def roots_of(kind, d, tiles, tree):
-    """§5.4: where paths begin, each with the box by axis that is inherited there."""
+    """§7.2: where paths begin, each with the box by axis that is inherited there."""
     whole = [[0, axis.resolution] for axis in d.axes]
     roots = []
     if kind == LOCAL or (kind == BRDF and tiles is not None and tiles.roots is None):

@@ -1,4 +1,4 @@
-"""SPEC.md §5.7 and §6.7: local environments."""
+"""SPEC.md §10: local environments."""
 import math
 import struct
 
@@ -20,7 +20,7 @@ class Light:
 
 
 def read_local_chunk(data, tiles, bins):
-    """§5.7. Returns the cosine's share and the bright tiles."""
+    """§10.1. Returns the cosine's share and the bright tiles."""
     require(data is not None and len(data) >= 8, 7005)
     sigma, count = struct.unpack_from("<fI", data)
     require(count <= 64 and len(data) == 8 + 40 * count, 7005)
@@ -132,7 +132,7 @@ class Local:
         return out
 
     def look_from(self, out, cells):
-        """§6.11: the weights as the position sees them."""
+        """§12.2: the weights as the position sees them."""
         if not cells:
             return
         out.cells = cells

@@ -1,4 +1,4 @@
-"""SPEC.md §5.8: what a file is not to be used without."""
+"""SPEC.md §5.4: what a file is not to be used without."""
 import math
 import struct
 

@@ -1,4 +1,4 @@
-"""SPEC.md §4, codec 2: a tree put together from its planes."""
+"""SPEC.md §7.4, codec 2: a tree put together from its planes."""
 import struct
 
 import numpy as np

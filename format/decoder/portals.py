@@ -1,4 +1,4 @@
-"""SPEC.md §5.10 and §6.12: rectangles that light comes through."""
+"""SPEC.md §13: rectangles that light comes through."""
 import math
 import struct
 

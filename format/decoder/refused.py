@@ -1,4 +1,4 @@
-"""What a reader does with a file that breaks a rule (SPEC.md §8)."""
+"""What a reader does with a file that breaks a rule (SPEC.md §1)."""
 
 
 class Refused(Exception):

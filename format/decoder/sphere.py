@@ -1,4 +1,4 @@
-"""SPEC.md §6, §6.1 to §6.4: numbers, the sphere, and environments."""
+"""SPEC.md §1, §6.1 to §6.5: numbers, the sphere, and environments."""
 import ctypes
 import math
 
@@ -61,7 +61,7 @@ class Sphere:
         return [[0, self.W], [0, self.H]], [0.0, 0.0]
 
     def place(self, box, u, s, p):
-        """The direction in a cell (§6.2), with its density."""
+        """The direction in a cell (§6.3), with its density."""
         (x0, x1), (y0, y1) = box
         t = [fraction_sampled(u[0], s[0]), fraction_sampled(u[1], s[1])]
         x = clamp(x0 + t[0] * (x1 - x0), x0 + self.W * (BETA / (2 * PI)), x1 - self.W * (BETA / (2 * PI)))
@@ -82,7 +82,7 @@ class Sphere:
         return pdf32(p * self.W / (2 * PI * (x1 - x0) * (self.z(y0) - self.z(y1))) * shape)
 
     def grid(self, v):
-        """Steps 2 to 4 of §6.3: the column, and the square."""
+        """Steps 2 to 4 of §6.4: the column, and the square."""
         x, y, z = v
         column = self.W * (0.5 - 0.5 * a(y, x))
         if column >= self.W:
@@ -101,12 +101,12 @@ class Sphere:
 
 
 def of_unit_length(v):
-    """Step 1 of §6.3."""
+    """Step 1 of §6.4."""
     return v is not None and 0.9995 < math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) < 1.0005
 
 
 class Environment:
-    """`tree` is a Tree of curves or Halvings, `sphere` the grid of directions: a Sphere, or the Square of §6.9."""
+    """`tree` is a Tree of curves or Halvings, `sphere` the grid of directions: a Sphere, or the Square of §6.6."""
 
     def __init__(self, tree, root, sphere):
         self.tree, self.root, self.sphere = tree, root, sphere

@@ -1,4 +1,4 @@
-"""SPEC.md §6.9: the equal-area octahedral square."""
+"""SPEC.md §6.6: the equal-area octahedral square."""
 import math
 
 from .sphere import BETA, PI, Sphere, a, clamp, f32, pdf32, sin_cos
@@ -6,7 +6,7 @@ from .tree import fraction_sampled, slope
 
 
 class Square:
-    """The grid of §6.9: W columns, H rows. What Sphere is to parameterization 1."""
+    """The grid of §6.6: W columns, H rows. What Sphere is to parameterization 1."""
 
     def __init__(self, columns, rows):
         self.W, self.H = columns, rows

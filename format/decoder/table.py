@@ -1,4 +1,4 @@
-"""SPEC.md §6.6: tables."""
+"""SPEC.md §8: tables."""
 import math
 
 from .sphere import clamp, random_number

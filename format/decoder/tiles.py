@@ -1,4 +1,4 @@
-"""SPEC.md §5.6: what the bins of a file share, and the walks through its splits."""
+"""SPEC.md §9: what the bins of a file share, and the traversals of its splits."""
 import struct
 
 import numpy as np

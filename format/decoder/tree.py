@@ -1,4 +1,4 @@
-"""SPEC.md §5.4, §6.2 and §6.3: curves, and the walks that sample and find cells."""
+"""SPEC.md §7.2 and §7.3: curves, and the traversals that sample and find cells."""
 import math
 import struct
 from bisect import bisect_right
@@ -88,7 +88,7 @@ class Tree:
             unit = self.curves[unit].end
 
     def draw(self, root, u, box, s):
-        """§6.2. `u`, `box` (low and high) and `s`, by axis, become those of the cell. Returns p."""
+        """§7.3. `u`, `box` (low and high) and `s`, by axis, become those of the cell. Returns p."""
         p, unit = 1.0, root
         while True:
             curve = self.curves[unit]
@@ -108,7 +108,7 @@ class Tree:
             unit += curve.child(i)
 
     def find(self, root, square, box, s, strata=None):
-        """§6.3. Returns p, 0 where no sample can fall. `strata`, by axis, become l and w of §6.5."""
+        """§7.3. Returns p, 0 where no sample can fall. `strata`, by axis, become l and w of §6.5."""
         p, unit = 1.0, root
         while True:
             curve = self.curves[unit]
@@ -131,7 +131,7 @@ class Tree:
 
 
 def fraction_sampled(u, s):
-    """t of §6.2."""
+    """t of §7.3."""
     return u if s == 0 else 2 * u / ((1 - s) + math.sqrt((1 - s) * (1 - s) + 4 * s * u))
 
 
@@ -144,7 +144,7 @@ def slope(s, t):
     return 1 + s * (2 * t - 1)
 
 
-# ---- the rules of §5.4 ------------------------------------------------------------------------------------
+# ---- the rules of §7.2 ------------------------------------------------------------------------------------
 
 
 def check_tree(tree, axes, roots):
@@ -183,7 +183,7 @@ def check_paths(tree, roots):
 
 
 def check_ranges(tree, axis, roots):
-    """§7: the largest inherited low end, the smallest high end, and whether all low ends were the same."""
+    """§7.2: the largest inherited low end, the smallest high end, and whether all low ends were the same."""
     inherited = {}
 
     def inherit(unit, low, high, same):

@@ -1,4 +1,4 @@
-"""SPEC.md §5.9 and §6.11: what of the light reaches a position."""
+"""SPEC.md §12: what of the light reaches a position."""
 import math
 import struct
 

@@ -1,4 +1,4 @@
-// Codec 2 of format/SPEC.md §4: a tree taken apart into planes, which deflate better. Not installed.
+// Codec 2 of format/SPEC.md §7.4: a tree taken apart into planes, which deflate better. Not installed.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// One axis of a tree of halvings: which ranges of its steps there are, level by level (SPEC.md §5.4).
+// One axis of a tree of halvings: which ranges of its steps there are, level by level (SPEC.md §6.2).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A tree of halvings as files hold it (SPEC.md §5.12), and how a grown one becomes that.
+// A tree of halvings as files hold it (SPEC.md §6.2), and how a grown one becomes that.
 #pragma once
 
 #include "compress/halvings/growth.h"

@@ -21,7 +21,7 @@
 namespace acdf::compress {
 
 /// How bins that share tiles are stored: curves in tiles and a byte a split in rows, which take the fewest bytes,
-/// or grids in tiles and sums in rows, which are searched fastest (format/SPEC.md, section 5.11).
+/// or grids in tiles and sums in rows, which are searched fastest (format/SPEC.md, section 10.6).
 enum class LocalShape { small, fast };
 
 /// How large a local environment map becomes.

@@ -1,4 +1,4 @@
-// Rows of probabilities as sums over groups of tiles and within them (format/SPEC.md, section 5.11).
+// Rows of probabilities as sums over groups of tiles and within them (format/SPEC.md, section 10.6).
 #pragma once
 
 #include <acdf/layout.h>

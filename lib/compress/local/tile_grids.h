@@ -1,4 +1,4 @@
-// Grids in the tiles of a local environment map, as its fast shape has them (format/SPEC.md, section 5.11).
+// Grids in the tiles of a local environment map, as its fast shape has them (format/SPEC.md, section 10.6).
 #pragma once
 
 #include "compress/local/tile_insides.h"

@@ -1,4 +1,4 @@
-// From a grown tree to the bytes of chunk HALV (SPEC.md §5.12), in memory that is taken once.
+// From a grown tree to the bytes of chunk HALV (SPEC.md §6.2), in memory that is taken once.
 #pragma once
 
 #include "compress/moving/growth.h"

@@ -1,4 +1,4 @@
-// Where curves lie in chunk TREE (format/SPEC.md, section 5.4).
+// Where curves lie in chunk TREE (format/SPEC.md, section 7.2).
 #pragma once
 
 #include <acdf/layout.h>

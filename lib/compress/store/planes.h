@@ -1,4 +1,4 @@
-// A tree taken apart into planes, which deflate better: codec 2 of format/SPEC.md §4.
+// A tree taken apart into planes, which deflate better: codec 2 of format/SPEC.md §7.4.
 #pragma once
 
 #include <cstdint>

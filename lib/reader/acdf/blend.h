@@ -1,5 +1,5 @@
 /* Distributions that share their fine structure: one freestanding header over acdf/sample.h, valid C99, C++17 and
- * CUDA/HIP/SYCL, with the same contract (SPEC.md §5.6, §6.7).
+ * CUDA/HIP/SYCL, with the same contract (SPEC.md §9, §10).
  *
  * Boxes are split in two until tiles are left. Splits and tiles are stored once; each bin has a *row* of one byte a
  * split: the probability of its lower part. What a caller samples from is a *mixture* of up to four rows, walked

@@ -1,6 +1,6 @@
 /* Sampling and evaluating BRDF files: for every view wo the reflected light rho(wo, wi) cos(theta_i), through the
  * half-vector (Lawrence et al. 2005, §6.2). One freestanding header over acdf/blend.h, valid C99, C++17 and
- * CUDA/HIP/SYCL, with the same contract: plain views into a checked file, no allocation, no errors (SPEC.md §6.8).
+ * CUDA/HIP/SYCL, with the same contract: plain views into a checked file, no allocation, no errors (SPEC.md §11).
  *
  * Frame: the surface's own, z is its normal, x its tangent. wo and wi are unit vectors that point away from the
  * surface. Pdfs are per steradian of wi. A half-vector may reflect wo below the surface: wi is returned as it

@@ -1,4 +1,4 @@
-/* Half-vectors of a BRDF file: where in the table they lie, and what they reflect (SPEC.md §6.8). */
+/* Half-vectors of a BRDF file: where in the table they lie, and what they reflect (SPEC.md §11). */
 #ifndef ACDF_BRDF_HALF_H
 #define ACDF_BRDF_HALF_H
 

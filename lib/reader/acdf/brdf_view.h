@@ -1,4 +1,4 @@
-/* Which stored views of a BRDF file serve a view, and with which weights (SPEC.md §6.8). */
+/* Which stored views of a BRDF file serve a view, and with which weights (SPEC.md §11). */
 #ifndef ACDF_BRDF_VIEW_H
 #define ACDF_BRDF_VIEW_H
 

@@ -1,4 +1,4 @@
-/* Weights of the bright tiles of a local environment map at a point (SPEC.md §6.7). Part of acdf/local.h. */
+/* Weights of the bright tiles of a local environment map at a point (SPEC.md §10.3). Part of acdf/local.h. */
 #ifndef ACDF_BRIGHT_TILES_H
 #define ACDF_BRIGHT_TILES_H
 

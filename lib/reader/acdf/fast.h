@@ -1,4 +1,4 @@
-/* The fast shape of a local environment map (SPEC.md §5.11, §6.13): rows of cumulative sums over tiles, and a
+/* The fast shape of a local environment map (SPEC.md §10.6): rows of cumulative sums over tiles, and a
  * regular grid of cells in each tile. What a sample and a density read lies where it is known beforehand, and is
  * searched by vectors: no walk, no branch on the data. Part of acdf/local.h; freestanding, valid C99, C++17 and
  * CUDA/HIP/SYCL.

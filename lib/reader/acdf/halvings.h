@@ -1,4 +1,4 @@
-/* Trees of halvings (SPEC.md §5.12): the cell that random numbers lead to, and the cell that holds a position.
+/* Trees of halvings (SPEC.md §6.2): the cell that random numbers lead to, and the cell that holds a position.
  * Valid C99, C++17 and CUDA/HIP/SYCL; no allocation, no errors: a tree was checked when its file was opened.
  *
  * A node is a box of grid steps. One that is not a leaf is halved on one axis, at (low + high) / 2 rounded down, so

@@ -1,4 +1,4 @@
-/* A local environment map in memory, and a shading point in it (SPEC.md §6.7). Part of acdf/local.h. */
+/* A local environment map in memory, and a shading point in it (SPEC.md §10). Part of acdf/local.h. */
 #ifndef ACDF_LOCAL_PARTS_H
 #define ACDF_LOCAL_PARTS_H
 

@@ -1,4 +1,4 @@
-/* Shading points of a local environment map: what serves a normal (SPEC.md §6.7). Part of acdf/local.h. */
+/* Shading points of a local environment map: what serves a normal (SPEC.md §10.3). Part of acdf/local.h. */
 #ifndef ACDF_LOCAL_POINT_H
 #define ACDF_LOCAL_POINT_H
 

@@ -1,4 +1,4 @@
-/* Which bins of a local environment map serve a normal (SPEC.md §6.7). */
+/* Which bins of a local environment map serve a normal (SPEC.md §10.2). */
 #ifndef ACDF_NORMALS_H
 #define ACDF_NORMALS_H
 

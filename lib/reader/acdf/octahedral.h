@@ -1,4 +1,4 @@
-/* The equal-area octahedral square (SPEC.md §6.9): P. Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using
+/* The equal-area octahedral square (SPEC.md §6.6): P. Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using
  * SIMD", Journal of Graphics Tools 13(3), 2008.
  *
  * +z lies in the middle of the square, -z in its four corners, the equator on the diamond between the middles of

@@ -1,5 +1,5 @@
 /* Files that are not to be used alone: made to be combined, by multiple importance sampling, with another sampler
- * that covers what they leave out (SPEC.md §5.8). Freestanding, valid C99, C++17 and CUDA/HIP/SYCL.
+ * that covers what they leave out (SPEC.md §5.4). Freestanding, valid C99, C++17 and CUDA/HIP/SYCL.
  *
  * Their pdf may be 0 where there is light: a renderer samples from both, and weighs by both pdfs. Such a file
  * stores which share of the samples to take from it. */

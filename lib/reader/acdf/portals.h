@@ -1,5 +1,5 @@
 /* Portals: rectangles that light comes through, as a mixture sees them. One freestanding header over
- * acdf/visibility.h, valid C99, C++17 and CUDA/HIP/SYCL, with the same contract (SPEC.md §5.10 and §6.12).
+ * acdf/visibility.h, valid C99, C++17 and CUDA/HIP/SYCL, with the same contract (SPEC.md §13).
  *
  * All portals that face the same way share a map of the light of their hemisphere. Its axes are tangents along the
  * sides of the portals, bent into a square, so that a portal is an upright rectangle of the map from wherever it is

@@ -1,4 +1,4 @@
-/* Curves and trees of curves (SPEC.md §5.4): sampling a cell, and finding the one that holds a point. */
+/* Curves and trees of curves (SPEC.md §7): sampling a cell, and finding the one that holds a point. */
 #ifndef ACDF_TREE_H
 #define ACDF_TREE_H
 

@@ -31,7 +31,7 @@ public:
         return acdf_local_sample(&data_, normal, u0, u1);
     }
     /// The pdf in sr^-1 of a unit direction for a normal; exactly that of `sample` for what it returned, but for
-    /// rounding where cells are tilted (`--fit pdf`; SPEC.md §6.10).
+    /// rounding where cells are tilted (`--fit pdf`; SPEC.md §14.1).
     ACDF_METHOD float pdf(const float normal[3], const float direction[3]) const noexcept {
         return acdf_local_pdf(&data_, normal, direction);
     }

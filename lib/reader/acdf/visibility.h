@@ -1,5 +1,5 @@
 /* Only the light that a mixture can see: one freestanding header over acdf/blend.h, valid C99, C++17 and
- * CUDA/HIP/SYCL, with the same contract (SPEC.md §5.9).
+ * CUDA/HIP/SYCL, with the same contract (SPEC.md §12).
  *
  * Positions and normals lie in the cells of a k-d tree. A cell has a row of bytes: how much of the bright tiles, of
  * the mixture as a whole and, at each split of tiles that counts in its region (a *column*), of its two parts

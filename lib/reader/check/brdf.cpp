@@ -14,7 +14,7 @@ using ull = unsigned long long;
 
 constexpr u32 max_columns = 1u << 16, max_rows = 1u << 28, max_views = 1u << 16;
 
-/// An axis as SPEC.md §6.8 has it.
+/// An axis as SPEC.md §11 has it.
 struct Wanted {
     const char* name;
     u32 role;

@@ -7,7 +7,7 @@ constexpr Severity error = Severity::error;
 constexpr Severity warning = Severity::warning;
 } // namespace
 
-// Ascending by number. SPEC.md §8 carries the same table; a test compares the two.
+// Ascending by number. SPEC.md has the same sentences, section by section; a test compares the two.
 const Rule rules[] = {
     {1001, error, "open", "The file can be opened for reading."},
     {1002, error, "read", "The file is a regular file and all its bytes can be read."},
@@ -26,24 +26,19 @@ const Rule rules[] = {
     {3001, error, "chunk-count", "There are 1 to 64 chunks and the file holds their whole table."},
     {3002, error, "critical-chunk", "A critical chunk is of a known type."},
     {3003, error, "duplicate-chunk", "No two chunks are of one type."},
-    {3004, error, "missing-chunk", "The chunks DESC, BINS and TREE are there."},
+    {3004, error, "missing-chunk", "DESC is there, and BINS and TREE are unless HALV is."},
     {3005, error, "codec", "`codec` is 0 (none), 1 (zlib) or, of TREE, 2 (planes)."},
     {3006, error, "chunk-offset",
      "A payload starts at the first multiple of 64 after what comes before it, in the table's order."},
     {3007, error, "chunk-bounds", "A payload lies inside the file."},
     {3008, error, "file-end", "`file_length` is the end of the last payload, rounded up to 64."},
     {3009, error, "chunk-flags",
-     "Only flag bit 0 may be set; it is clear for META, PLAC and PORT and set for all other known types; "
-     "`reserved` is "
-     "zero."},
+     "`flags` of a known type are those of §3, of others at most 1; `reserved` is zero."},
     {3010, error, "raw-length", "With codec 0, `raw_length` equals `stored_length`."},
     {3011, error, "deflate-ratio", "With codec 1 or 2, `raw_length` is less than 1032 (`stored_length` + 1)."},
     {3012, error, "inflate-limit",
      "The compressed chunks, but for unknown ones, inflate to no more than the reader's limit."},
-    {3013, error, "chunk-kind",
-     "TILE and ROWS come only in files of kinds 2 and 3, LOCL, SUMS, GRID, PLAC and PORT only in those of kind 2, "
-     "VIEW only in "
-     "those of kind 3, COMP in all but those."},
+    {3013, error, "chunk-kind", "A chunk comes only in files of the kinds that §3 lists."},
     {3014, error, "chunk-type", "The type of a chunk is four printable ASCII characters."},
 
     {4001, error, "chunk-crc", "`crc` is the CRC-32 of the stored bytes."},
@@ -67,22 +62,20 @@ const Rule rules[] = {
     {5011, error, "axis-name",
      "The name of an axis is UTF-8, not empty, padded with zero bytes, and no other axis has it."},
     {5012, error, "axis-role", "`role` is 0 (sampled) or 1 (indexed), and one axis at least is sampled."},
-    {5013, error, "axis-measure", "`measure` is 0 (linear) or 1 (cosine)."},
+    {5013, error, "axis-measure", "`measure` is 0 or 1."},
     {5014, error, "axis-resolution", "`resolution` is 1 to 2147483647."},
     {5015, error, "axis-range", "`low` and `high` are finite and differ."},
     {5016, error, "parameterization-kind", "The parameterization is that of the kind."},
     {5017, error, "metadata",
-     "META is as §5.5 says: lengths within the chunk, nothing left over, at most 1024 pairs, "
-     "keys of 1 to 255 bytes, all UTF-8."},
+     "META is as §5.3 says: lengths within the chunk, nothing left over, at most 1024 pairs, keys of 1 to 255 "
+     "bytes, all UTF-8."},
     {5018, error, "duplicate-key", "No two metadata keys are equal."},
     {5019, error, "channels", "`channels` is one of those of §5.1."},
     {5020, error, "partner",
-     "COMP is as long as its count says, with a record for each bin or, but for local environments, none; "
-     "`reserved` is zero, `share` in (0, 1), recommended shares in (0, 1], fluxes finite, not negative, and 0 but "
-     "in "
-     "local environments."},
+     "COMP has a record for each bin or, but for local environments, none; `reserved` is zero, `share` in (0, 1), "
+     "recommended shares in (0, 1], fluxes finite, not negative, and 0 but in local environments."},
     {5021, error, "partner-kind",
-     "Kind and heuristic of an MIS partner are those of §5.8; that of a table is 4, and no other's."},
+     "`kind` and `heuristic` of COMP are those of §5.4; `kind` is 4 for tables alone."},
 
     {6001, error, "tree-length", "TREE is 1 to 4294967294 units of two bytes long."},
     {6002, error, "curve-end", "A curve ends inside TREE."},
@@ -112,8 +105,8 @@ const Rule rules[] = {
      "zero."},
     {6021, error, "codebook", "The codebook rises strictly from 0 to 65535."},
     {6022, error, "splits",
-     "Splits stand in preorder, at most 48 on a path, and tiles are numbered in the order of the walk: each is met "
-     "once."},
+     "Splits stand in preorder, at most 48 on a path, and tiles are numbered in the order of the traversal: each "
+     "is met once."},
     {6023, error, "split-position",
      "A split is on axis 0 or 1, its position strictly inside the box that it divides."},
     {6024, error, "tile-root", "The root of a tile is the start of a curve, or FFFFFFFF."},
@@ -122,37 +115,34 @@ const Rule rules[] = {
     {6027, error, "fast-shape",
      "SUMS and GRID come together, with TILE and roots of its tiles, and without ROWS, PLAC and PORT."},
     {6028, error, "sums",
-     "SUMS has `row_count` rows. Ends of groups never decrease up to 32767, those of the tiles of a group up to "
-     "255, and "
-     "nothing behind the last group and tile has a share."},
+     "SUMS has `row_count` rows. Ends of clusters never decrease up to 32767, those of the tiles of a cluster up "
+     "to 255, and nothing behind the last cluster and tile has a share."},
     {6029, error, "grid",
-     "GRID has the grids of all tiles without gaps, each at its root, with shifts of at most 30 and 1 to 64 cells "
-     "an "
-     "axis, and behind them 64 zero bytes. The ends of a list never decrease up to 255."},
+     "GRID has the grid of each tile at its root, without gaps, with shifts of at most 30 and 1 to 64 cells an "
+     "axis, then 64 zero bytes. Ends never decrease up to 255."},
 
     {6030, error, "halvings",
      "HALV is as long as its counts say, codes have 2 to 12 bits, and its reserved fields are zero."},
     {6031, error, "halved-nodes", "`halving_count` nodes of HALV are halved, and every half is there."},
     {6032, error, "halved-axis", "A node is halved on a sampled axis that it has two steps or more of."},
     {6033, error, "halved-numbers",
-     "A node that no random number leads to is a leaf; one with a code between the first and the last is reached "
-     "by two "
-     "steps of random numbers or more on its axis."},
+     "A dark node is a leaf; one with a code between the first and the last has two steps of random numbers or "
+     "more on its axis."},
     {6034, error, "halvings-padding", "The padding of HALV is zero."},
     {6035, error, "halvings-alone", "HALV comes without BINS and TREE, and with fit 4."},
     {7001, error, "environment-axes",
-     "An environment, local or not, has the two axes of §6.1 first, with parameterization 4 those of §6.9, with "
-     "resolutions of at most 65536; one that is not local has no others."},
+     "The first axes of an environment, local or not, are those of §6.1 or, with parameterization 4, §6.6, of at "
+     "most 65536 steps; one that is not local has no others."},
     {7002, error, "environment-bins", "An environment has one bin."},
     {7003, error, "normal-axes",
-     "A local environment has the axes of an environment, and one or two of normals as in §6.7."},
+     "A local environment has the axes of an environment, and one or two of normals as in §10."},
     {7004, error, "normal-bins", "A local environment has as many bins as its normals' axes make."},
     {7005, error, "local-chunk",
      "A local environment has LOCL, as long as its count of bright tiles says, at most 64; `cosine_share` is in "
      "[0, "
      "1)."},
     {7006, error, "bright-tile",
-     "A light is a tile, in ascending order, with the tile's box, a unit direction, a radius in (0, 2] and a "
+     "Bright tiles are tiles, in ascending order, with the tile's box, a unit direction, a radius in (0, 2] and a "
      "positive finite share."},
     {7007, error, "bright-tile-row", "In the row of a bin of positive share a bright tile has probability 0."},
     {7008, error, "environment-share", "The share of an environment's bin is 1."},
@@ -182,11 +172,11 @@ const Rule rules[] = {
      "The sums of a map begin with a row and a column of 0, and no cell between them has less than 0."},
 
     {8001, error, "brdf-axes",
-     "A BRDF has the axes of §6.8, cos_theta_h of at most 268435456 steps and the others of at most 65536."},
+     "A BRDF has the axes of §11, cos_theta_h of at most 268435456 steps and the others of at most 65536."},
     {8002, error, "brdf-bins", "A BRDF has as many bins as the product of its axes of views."},
     {8003, error, "views",
-     "A BRDF has VIEW, as long as `theta_count` says, with the counts of the axes; only flag bit 0 may be set, "
-     "where `phi_count` is 1, and phi_h begins at 0 if it is, else at -π."},
+     "VIEW is there, as long as `theta_count` says, with the counts of the axes; only flag bit 0 may be set, where "
+     "`phi_count` is 1, and phi_h begins at 0 if it is, else at -π."},
     {8004, error, "view-nodes", "The stored views are in [0, 1] and strictly increasing."},
     {8005, error, "diffuse-share", "`diffuse_share` is in [0, 1)."},
     {8006, error, "brdf-stored", "Each bin of a BRDF is stored: no root is FFFFFFFF."},

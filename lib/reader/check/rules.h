@@ -1,4 +1,4 @@
-// The rules of format/SPEC.md §8: one table, used by the checks, by `acdf validate` and by the tests.
+// The rules of format/SPEC.md: one table, used by the checks, by `acdf validate` and by the tests.
 #pragma once
 
 #include <cstddef>

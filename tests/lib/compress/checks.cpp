@@ -33,7 +33,7 @@ constexpr std::uint32_t kPhiBins = 31,
 
 bool is_octahedral(const Target& target) { return target.parameterization == ACDF_PARAM_OCTAHEDRAL; }
 
-/// The direction at (u, v) of the octahedral square, and back: SPEC.md §6.9.
+/// The direction at (u, v) of the octahedral square, and back: SPEC.md §6.6.
 void square_direction(double u, double v, float d[3]) {
     const double a = std::abs(2.0 * u - 1.0), b = std::abs(2.0 * v - 1.0), e = a + b - 1.0, r = 1.0 - std::abs(e);
     const double phi = r == 0.0 ? 0.0 : kPi / 4.0 * ((b - a) / r + 1.0), sine = r * std::sqrt(2.0 - r * r);

@@ -1,4 +1,4 @@
-// acdf/brdf.h against a decoder written from the specification (SPEC.md §6.8), on files of which no fit would
+// acdf/brdf.h against a decoder written from the specification (SPEC.md §11), on files of which no fit would
 // think.
 #include "tests/lib/reader/brdf_loaded.h"
 

@@ -318,7 +318,7 @@ struct HalvingSpec {
     std::uint32_t code = 0;
 };
 
-/// Bits, the lowest of each byte first (SPEC.md §5.12).
+/// Bits, the lowest of each byte first (SPEC.md §6.2).
 class BitSpec {
 public:
     void put(std::uint32_t value, std::uint32_t count) {

@@ -1,4 +1,4 @@
-// A slow decoder of the fast shape of local environments that follows format/SPEC.md §5.11 and §6.13 word by word.
+// A slow decoder of the fast shape of local environments that follows format/SPEC.md §10.6 word by word.
 // It shares nothing with lib/reader. It expects valid files.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Chunks SUMS and GRID, written from format/SPEC.md §5.11. Checks nothing.
+// Chunks SUMS and GRID, written from format/SPEC.md §10.6. Checks nothing.
 #pragma once
 
 #include "tests/lib/reader/files.h"

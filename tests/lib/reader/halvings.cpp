@@ -14,7 +14,7 @@ using namespace acdf_test;
 
 namespace {
 
-// SPEC.md §5.12, with the numbers of its table of examples.
+// SPEC.md §6.2, with the numbers of its table of examples.
 TEST(HalvingShare, RisesFromZeroToOneAndIsSymmetric) {
     for (std::uint32_t bits = ACDF_LEAST_CODE_BITS; bits <= ACDF_MOST_CODE_BITS; ++bits) {
         const std::uint32_t last = (1u << bits) - 1;

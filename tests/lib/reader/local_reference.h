@@ -1,4 +1,4 @@
-// A slow decoder of local environments that follows format/SPEC.md §5.6, §5.7, §5.11, §6.7 and §6.13 word by word.
+// A slow decoder of local environments that follows format/SPEC.md §9 and §10 word by word.
 // It shares nothing with lib/reader. It expects valid files.
 #pragma once
 
@@ -128,7 +128,7 @@ public:
         return density_at(cell, d);
     }
 
-    /// SPEC.md §6.7
+    /// SPEC.md §10.2
     double pdf(const Vector& n, const double (&d)[3]) const {
         const Source from = source(n);
         if (from.what == Source::nothing) return 0.0;

@@ -1,4 +1,4 @@
-// Codec 2 from SPEC.md §4 alone: the planes of a tree in preorder, and files that hold them.
+// Codec 2 from SPEC.md §7.4 alone: the planes of a tree in preorder, and files that hold them.
 #pragma once
 
 #include "tests/lib/reader/action.h"

@@ -46,7 +46,7 @@ struct Sample {
     double pdf;
 };
 
-// SPEC.md §5.4
+// SPEC.md §7.2
 struct Curve {
     std::size_t axis;
     double maximum;
@@ -59,7 +59,7 @@ struct Curve {
     std::size_t n() const { return children.size(); }
 };
 
-// SPEC.md §5.12: the share of a node's random numbers that leads to its lower half, in steps of 2^-31.
+// SPEC.md §6.2: the share of a node's random numbers that leads to its lower half, in steps of 2^-31.
 inline std::uint64_t halving_share(std::uint64_t code, std::uint64_t code_bits) {
     const double q = static_cast<double>((std::uint64_t{1} << code_bits) - 1),
                  j = 2.0 * static_cast<double>(code) - q;
@@ -161,7 +161,7 @@ public:
         return out;
     }
 
-    // SPEC.md §6.2: `choose` finds the segment of a curve whose positions are those on the axis.
+    // SPEC.md §7.3: `choose` finds the segment of a curve whose positions are those on the axis.
     Cell walk(const std::function<std::size_t(const Curve&)>& choose) const {
         Cell cell;
         cell.high[0] = columns;
@@ -243,7 +243,7 @@ public:
         s.pdf = density(s.cell, t0, t1);
     }
 
-    // SPEC.md §6.3 and §6.4
+    // SPEC.md §6.4 and §7.3
     double pdf(const double (&d)[3], Cell* found = nullptr) const {
         double square[2];
         if (!square_of(d, square)) return 0.0;
@@ -252,7 +252,7 @@ public:
         return density_at(cell, d);
     }
 
-    // SPEC.md §6.9
+    // SPEC.md §6.6
     static void square_direction(double u, double v, double (&d)[3]) {
         const double a = std::fabs(2 * u - 1), b = std::fabs(2 * v - 1), e = a + b - 1, r = 1 - std::fabs(e);
         const double phi = r == 0 ? 0 : M_PI / 4 * ((b - a) / r + 1), sine = r * std::sqrt(2 - r * r);

@@ -1,4 +1,4 @@
-/* Samples and pdfs of BRDF files for shaders, as acdf/brdf.h says (SPEC.md 6.8), in floats, over the words that
+/* Samples and pdfs of BRDF files for shaders, as acdf/brdf.h says (SPEC.md 11), in floats, over the words that
  * acdf::ShaderTables::make_walk (acdf/shader/tables.h) makes. One text for processors and for shaders of every
  * language (acdf/dialect.h), as `acdf/shader/walk.h` is: a shader has both bright tiles and surfaces.
  *
