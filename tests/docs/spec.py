@@ -4,8 +4,8 @@ import pathlib
 import re
 import sys
 
-MOST_BYTES = 60000
-MOST_BYTES_OF_ENVIRONMENTS = 19500  # up to the heading of part II
+MOST_BYTES = 57000
+MOST_BYTES_OF_ENVIRONMENTS = 19000  # up to the heading of part II
 SECOND_PART = "\n# Part II. "
 NUMBER = r"\d+(?:\.\d+)?"
 SECTION = f"§({NUMBER})"

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The decoder of format/decoder, which was written from SPEC.md alone, against the program: on the test vectors, on the
-examples of SPEC.md, and on files of every kind and fit that the program makes anew.
+examples of format/examples.md, and on files of every kind and fit that the program makes anew.
 
     decoder.py [--program ACDF --make-vectors MAKE_VECTORS] [--broken-files TEST_READER_RULES] [FILE.acdf FILE.csv]...
 
@@ -133,13 +133,13 @@ def stored_vectors(fail):
         compare(load(file.read_bytes()), path, fail)
 
 
-# ---- SPEC.md --------------------------------------------------------------------------------------------
+# ---- examples.md ----------------------------------------------------------------------------------------
 
 
 def hex_examples():
     """The blocks ```hex: each line an offset, two spaces, bytes, two spaces, a remark. Bytes that are not listed are 0."""
     blocks, inside = [], False
-    for line in (ROOT / "format" / "SPEC.md").read_text(encoding="utf-8").splitlines():
+    for line in (ROOT / "format" / "examples.md").read_text(encoding="utf-8").splitlines():
         if line.startswith("```"):
             inside = line == "```hex"
             if inside:
@@ -150,7 +150,7 @@ def hex_examples():
 
 
 def examples_of_the_text(fail):
-    """The numbers of §15: a file of halvings, and the planes of a tree for the same grid."""
+    """The numbers of the text: a file of halvings, and the planes of a tree for the same grid."""
     file, planes = hex_examples()
     halved = load(file + bytes(-len(file) % 64))
     wanted = (-0.119618, 0.378052, 0.918024, 0.241204)

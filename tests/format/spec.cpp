@@ -1,4 +1,4 @@
-// format/SPEC.md against the program: its rules and worked examples.
+// format/SPEC.md and format/examples.md against the program: rules and worked examples.
 #include "tests/lib/reader/load.h"
 #include "tests/lib/reader/planes.h"
 
@@ -19,8 +19,8 @@ using namespace acdf_test;
 
 namespace {
 
-std::vector<std::string> spec_lines() {
-    std::ifstream in(ACDF_TEST_DIR "/../format/SPEC.md");
+std::vector<std::string> lines_of(const std::string& page) {
+    std::ifstream in(ACDF_TEST_DIR "/../format/" + page);
     std::vector<std::string> lines;
     for (std::string line; std::getline(in, line);) lines.push_back(line);
     return lines;
@@ -43,7 +43,7 @@ std::vector<std::string> cells_of(const std::string& line) {
 /// The rows of all tables of rules, by number: "6012, a warning" and the sentence.
 std::vector<std::pair<std::string, std::string>> spec_rules() {
     std::vector<std::pair<std::string, std::string>> rules;
-    for (const std::string& line : spec_lines()) {
+    for (const std::string& line : lines_of("SPEC.md")) {
         const auto cells = cells_of(line);
         if (cells.size() == 2 && cells[0].size() >= 4 && cells[0].find_first_not_of("0123456789") >= 4)
             rules.emplace_back(cells[0], cells[1]);
@@ -69,7 +69,7 @@ Bytes worked_example(int number) {
     Bytes bytes;
     int blocks = 0;
     bool in_block = false;
-    for (const std::string& line : spec_lines()) {
+    for (const std::string& line : lines_of("examples.md")) {
         if (line.rfind("```", 0) == 0) {
             in_block = line == "```hex" && blocks++ == number;
             continue;
@@ -84,10 +84,10 @@ Bytes worked_example(int number) {
     return bytes;
 }
 
-/// SPEC.md as one line.
+/// examples.md as one line.
 std::string worked_text() {
     std::string text;
-    for (const std::string& line : spec_lines()) text += line + ' ';
+    for (const std::string& line : lines_of("examples.md")) text += line + ' ';
     return text;
 }
 
@@ -196,7 +196,7 @@ TEST(Spec, secondExampleLoads) {
 // The table of shares in §6.2.
 TEST(Spec, sharesOfCodesAreThoseOfTheProgram) {
     int shares = 0;
-    for (const std::string& line : spec_lines()) {
+    for (const std::string& line : lines_of("SPEC.md")) {
         const auto cells = cells_of(line);
         if (line == "| B | k | share |") shares = 1;
         else if (shares > 0 && cells.size() != 3) break;
