@@ -36,7 +36,7 @@ struct RenderArguments {
     bool no_reference = false, no_timing = false, json = false, quiet = false, force = false;
 };
 
-/// What `make` returns; what it finds wrong with the scene is told with the scene's name.
+/// Calls `make`; its errors get the scene's name as a prefix.
 template <typename Make>
 auto of_scene(const RenderArguments& options, const Make& make) {
     try {
@@ -156,7 +156,8 @@ builder::Target light_target(const RenderArguments& options, const input::Probe&
     how.filter = filter;
     builder::Target target;
     const builder::Status status = builder::Target::from(pixels, how, target);
-    if (status.code == builder::ErrorCode::no_energy) throw Failure(options.scene + ": light: the probe is black");
+    if (status.code == builder::ErrorCode::no_energy)
+        throw Failure(options.scene + ": light: the probe is black, so there is nothing to sample");
     if (!status.ok()) throw Failure(options.scene + ": light: " + status.message);
     return target;
 }

@@ -7,7 +7,8 @@
 
 namespace acdf::tools {
 
-/// A rectangle in the frame of directions as one in the scene's own coordinates, which `visibility` tells.
+/// Transforms a rectangle from the frame of directions to the scene's own coordinates, by the transform of
+/// `visibility`.
 builder::Portal portal_of(const builder::Visibility& visibility, const measure::Portal& portal);
 
 } // namespace acdf::tools

@@ -82,7 +82,8 @@ std::size_t name_width(const Comparison& comparison) {
     return width;
 }
 
-/// Of the samplers as they were measured: with independent numbers noise is told for other counts of samples, too.
+/// Of the samplers as they were measured: with independent numbers the table has the noise at other counts of
+/// samples, too.
 std::string table(const RenderPass& pass, const Comparison& comparison, const ComparisonOptions& o) {
     const bool timed = o.timing, scale = pass.numbers == measure::Numbers::independent;
     const int width = static_cast<int>(std::min<std::size_t>(name_width(comparison), 60));
@@ -129,7 +130,7 @@ std::string change_text(const RenderPass& run, Gain gain, const char* equal) {
     std::vector<std::string> pairs;
     for (const Overtaking& pair : overtakings(run.comparison, *run.in_the_open, gain))
         pairs.push_back("'" + pair.winner->spec.text + "' overtakes '" + pair.loser->spec.text + "'");
-    const std::string where = std::string("At equal ") + equal + " what hides light changes ";
+    const std::string where = std::string("At equal ") + equal + " occluders change ";
     if (pairs.empty()) return where + "no order beyond the noise of this run.";
     return where + "the ranking: " + joined(pairs) + ".";
 }
@@ -154,14 +155,14 @@ ordered_json pass_json(const RenderPass& pass, const ComparisonOptions& o) {
 }
 
 std::string pass_table(const RenderPass& pass, const ComparisonOptions& o) {
-    std::string out = pass.numbers == measure::Numbers::sobol ? "With the numbers of a scrambled Sobol' sequence:\n"
+    std::string out = pass.numbers == measure::Numbers::sobol ? "With a scrambled Sobol' sequence:\n"
                                                               : "With independent random numbers:\n";
     out += table(pass, pass.comparison, o);
     if (!pass.in_the_open) return out;
-    out += "\nThe same with nothing in the way of light:\n" + table(pass, *pass.in_the_open, o);
+    out += "\nThe same without occluders:\n" + table(pass, *pass.in_the_open, o);
     const auto hidden = ranking(pass.comparison), open = ranking(*pass.in_the_open);
-    out += "\nRanking by variance, with what hides light: " + joined(hidden) + "\n";
-    out += "and with nothing in the way:                " + joined(open) + "\n";
+    out += "\nRanking by variance, with occluders: " + joined(hidden) + "\n";
+    out += "Ranking by variance, without them:   " + joined(open) + "\n";
     out += change_text(pass, gain_at_equal_samples, "samples") + "\n";
     if (o.timing) out += change_text(pass, gain_at_equal_time, "time") + "\n";
     return out;

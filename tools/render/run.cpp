@@ -132,7 +132,8 @@ std::string judge(const Comparison& comparison, Gain gain, const char* where, co
     const Compared* baseline = best_of(comparison.samplers, false, gain);
     if (!ours || !baseline) {
         const Compared* best = ours ? ours : baseline;
-        if (!best) return std::string("At equal ") + where + " nothing can be said: rare, bright samples decide.";
+        if (!best)
+            return std::string("At equal ") + where + " no sampler can be named best: rare, bright samples decide.";
         return std::string("At equal ") + where + " '" + best->spec.text + "' has the least noise.";
     }
     const bool wins = gain(*ours, *baseline).value >= 1.0;
@@ -173,7 +174,7 @@ std::unique_ptr<LoadedScene> load_scene(const SceneFile& file, const std::string
         out->scene.light.means = out->means.data();
     }
     out->points = measure::visible_points(out->scene);
-    if (out->points.points.empty()) throw SceneError("camera: it sees no object");
+    if (out->points.points.empty()) throw SceneError("camera: no object is in view");
     return out;
 }
 

@@ -43,7 +43,8 @@ Table file_table(std::vector<std::uint8_t> bytes) {
     auto loaded = std::make_shared<LoadedFile>();
     loaded->bytes = std::move(bytes);
     const Status status = File::from_memory(loaded->bytes.data(), loaded->bytes.size(), loaded->file);
-    if (!status.ok()) throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+    if (!status.ok())
+        throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
     LightSamplerPtr sampler = measure::file_sampler(loaded->file);
     const File* file = &loaded->file;
     return {loaded, std::move(sampler), file};
@@ -124,7 +125,7 @@ Table given_file(const std::string& path) {
 }
 
 [[noreturn]] void fail_without_scene(const SamplerSpec& spec) {
-    throw SpecError("sampler '" + spec.text + "': there is no scene to look from");
+    throw SpecError("sampler '" + spec.text + "': it needs a scene");
 }
 
 /// As samplers of texels see them, which stay as long as these.
@@ -213,7 +214,7 @@ struct SamplerBuilder::Store {
         case SamplerKind::warp:
             break;
         }
-        throw std::logic_error("is no sampler of single directions");
+        throw std::logic_error("not a sampler of single directions");
     }
     const Table& table(const SamplerSpec& spec, std::size_t material) {
         if (!spec.parts.empty() && spec.kind == SamplerKind::tiles) return tiles(spec, material);
@@ -246,7 +247,8 @@ struct SamplerBuilder::Store {
         const File* light = table(spec.parts[0], material).file;
         const File* brdf = table(spec.parts[1], material).file;
         if (light->partner())
-            throw SpecError("sampler '" + spec.text + "': its light has no support where its partner is enough");
+            throw SpecError("sampler '" + spec.text +
+                            "': the pdf of its light is 0 where the MIS partner suffices");
         const Table& made = kept(spec.text + "/" + std::to_string(parts), material, [&] {
             return brdf ? measure::product_sampler(*light, *brdf, parts)
                         : measure::product_sampler(*light, spec.parts[1].alpha, parts);
@@ -257,7 +259,8 @@ struct SamplerBuilder::Store {
         const File* light = table(spec.parts[0], material).file;
         const File* brdf = table(spec.parts[1], material).file;
         if (light->partner())
-            throw SpecError("sampler '" + spec.text + "': its light has no support where its partner is enough");
+            throw SpecError("sampler '" + spec.text +
+                            "': the pdf of its light is 0 where the MIS partner suffices");
         return *kept(spec.text, material, [&] {
                     return brdf ? measure::product_warp_sampler(*light, *brdf)
                                 : measure::product_warp_sampler(*light, spec.parts[1].alpha);
@@ -288,7 +291,7 @@ struct SamplerBuilder::Store {
         if (spec.kind == SamplerKind::strata)
             return std::make_unique<measure::StratifiedEstimator>(stratified(spec, samples));
         if (spec.kind == SamplerKind::file && table(spec, material).file->partner())
-            throw SpecError("sampler '" + spec.text + "': has no support where its partner is enough: mis(" +
+            throw SpecError("sampler '" + spec.text + "': its pdf is 0 where the MIS partner suffices; use mis(" +
                             spec.text + ", cosine)");
         if (spec.kind != SamplerKind::mis)
             return std::make_unique<measure::SingleEstimator>(single(spec, material, samples), samples);
@@ -301,7 +304,7 @@ struct SamplerBuilder::Store {
         return std::make_unique<measure::MisEstimator>(shares, spec.power ? measure::Heuristic::power
                                                                           : measure::Heuristic::balance);
     }
-    /// Tells of all tables of a sampler, each once.
+    /// Adds up bytes and times of all tables of a sampler, each once.
     void sum_up(const SamplerSpec& spec, BuiltSampler& out) {
         std::set<const measure::LightSampler*> used;
         for (std::size_t material = 0; material < brdfs.size(); ++material) gather(spec, material, used);

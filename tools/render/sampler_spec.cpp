@@ -63,13 +63,13 @@ bool parse_number(const std::string& text, double& value) {
 
 void read_size(const std::string& argument, SamplerSpec& spec) {
     const auto bytes = parse_size(argument);
-    if (!bytes || *bytes == 0) fail(spec.text, "'" + argument + "' is no size, such as 64KiB");
+    if (!bytes || *bytes == 0) fail(spec.text, "'" + argument + "' is not a size, such as 64KiB");
     spec.bytes = *bytes;
 }
 
 void read_grid(const std::string& argument, SamplerSpec& spec) {
     if (!parse_pair(argument, kMostCells, spec.columns, spec.rows))
-        fail(spec.text, "'" + argument + "' is no grid, such as 32x16");
+        fail(spec.text, "'" + argument + "' is not a grid, such as 32x16");
 }
 
 void read_argument(const std::string& argument, SamplerSpec& spec) {
@@ -87,15 +87,15 @@ void read_argument(const std::string& argument, SamplerSpec& spec) {
         return read_grid(argument, spec);
     case SamplerKind::portals:
         spec.uniform = argument == "uniform";
-        if (!spec.uniform && argument != "light") fail(spec.text, "is portals or portals:uniform");
+        if (!spec.uniform && argument != "light") fail(spec.text, "give portals or portals:uniform");
         return;
     case SamplerKind::brdf_table:
         spec.centre = argument == "centre";
-        if (!spec.centre && argument != "mean") fail(spec.text, "is brdf-table:mean or brdf-table:centre");
+        if (!spec.centre && argument != "mean") fail(spec.text, "give brdf-table:mean or brdf-table:centre");
         return;
     case SamplerKind::strata:
         spec.by_radiance = argument == "radiance";
-        if (!spec.by_radiance && argument != "solid-angle") fail(spec.text, "is strata or strata:radiance");
+        if (!spec.by_radiance && argument != "solid-angle") fail(spec.text, "give strata or strata:radiance");
         return;
     case SamplerKind::ggx:
         if (!parse_number(argument, spec.alpha) || spec.alpha < 0.001 || spec.alpha > 2.0)
@@ -104,14 +104,14 @@ void read_argument(const std::string& argument, SamplerSpec& spec) {
     case SamplerKind::ris:
         if (!parse_number(argument, number) || number != std::floor(number) || number < 1.0 ||
             number > kMostCandidates)
-            fail(spec.text, "candidates are counted from 1 to " + std::to_string(kMostCandidates));
+            fail(spec.text, "the number of candidates is from 1 to " + std::to_string(kMostCandidates));
         spec.candidates = static_cast<std::uint32_t>(number);
         return;
     case SamplerKind::product:
         if (argument == "auto") return;
         if (!parse_number(argument, number) || number != std::floor(number) || number < 1.0 ||
             number > double{ACDF_CUT_MAX_PARTS})
-            fail(spec.text, "parts are counted from 1 to " + std::to_string(ACDF_CUT_MAX_PARTS));
+            fail(spec.text, "the number of parts is from 1 to " + std::to_string(ACDF_CUT_MAX_PARTS));
         spec.divisions = static_cast<std::uint32_t>(number);
         return;
     case SamplerKind::file:
@@ -151,12 +151,12 @@ void read_partner(const std::string& options, SamplerSpec& spec) {
                            : words[i] == "--heuristic" ? parse_heuristic(value, spec.mis)
                                                        : false;
         if (!known)
-            fail(spec.text, "'" + words[i] + " " + value + "' is no option: --mis cosine, --shares 2:1, " +
+            fail(spec.text, "'" + words[i] + " " + value + "' is not an option: --mis cosine, --shares 2:1, " +
                                 "--heuristic power, --scene, or of local --shape fast");
         ++i;
     }
     if (spec.kind == SamplerKind::ideal && spec.mis.kind > ACDF_PARTNER_COSINE)
-        fail(spec.text, "knows --mis cosine alone");
+        fail(spec.text, "takes --mis cosine alone");
     if (spec.kind == SamplerKind::local && spec.mis.kind == ACDF_PARTNER_MEAN)
         fail(spec.text, "--mis mean is for env");
 }
@@ -210,7 +210,7 @@ SamplerSpec parse_made(const std::string& text, std::size_t open) {
         spec.parts.push_back(parse_single(part));
     for (const SamplerSpec& part : spec.parts)
         if (part.mis.kind != ACDF_PARTNER_NONE)
-            fail(text, "'" + part.text + "' has no support where its partner is enough");
+            fail(text, "'" + part.text + "' has a pdf of 0 where its MIS partner suffices");
     const std::size_t count = spec.parts.size();
     const SamplerSpec &first = spec.parts.front(), &last = spec.parts.back();
     switch (spec.kind) {
@@ -218,18 +218,18 @@ SamplerSpec parse_made(const std::string& text, std::size_t open) {
         if (count != 2 || !is_brdf(last) ||
             (first.kind != SamplerKind::local && first.kind != SamplerKind::visibility &&
              first.kind != SamplerKind::env && first.kind != SamplerKind::file))
-            fail(text, "is product(LIGHT,BRDF): of local:SIZE, visibility:SIZE, env:SIZE or a file, and brdf:SIZE, "
-                       "ggx:ALPHA or "
-                       "a file");
+            fail(text, "give product(LIGHT,BRDF): LIGHT is local:SIZE, visibility:SIZE, env:SIZE or a file; BRDF "
+                       "is brdf:SIZE, ggx:ALPHA or a file");
         return spec;
     case SamplerKind::warp:
         if (count != 2 || !is_brdf(last) ||
             (first.kind != SamplerKind::local && first.kind != SamplerKind::env && first.kind != SamplerKind::file))
-            fail(text,
-                 "is warp(LIGHT,BRDF): of local:SIZE, env:SIZE or a file, and brdf:SIZE, ggx:ALPHA or a file");
+            fail(text, "give warp(LIGHT,BRDF): LIGHT is local:SIZE, env:SIZE or a file; BRDF is brdf:SIZE, "
+                       "ggx:ALPHA or a file");
         return spec;
     case SamplerKind::tiles:
-        if (count != 1 || !is_brdf(last)) fail(text, "is tiles:12x12(BRDF): of brdf:SIZE, ggx:ALPHA or a file");
+        if (count != 1 || !is_brdf(last))
+            fail(text, "give tiles:12x12(BRDF): BRDF is brdf:SIZE, ggx:ALPHA or a file");
         return spec;
     case SamplerKind::ris:
         if (count != 2) fail(text, "takes its candidates from two samplers");
@@ -239,7 +239,8 @@ SamplerSpec parse_made(const std::string& text, std::size_t open) {
                 fail(text, "'" + part.text + "' cannot give candidates");
         return spec;
     default:
-        fail(text, "is made of nothing: product(...), warp(...), tiles:12x12(...), ris:32(...) and mis(...) are");
+        fail(text, "takes no samplers in parentheses: product(...), warp(...), tiles:12x12(...), ris:32(...) and "
+                   "mis(...) do");
     }
 }
 
@@ -248,8 +249,8 @@ SamplerSpec parse_part(const std::string& text) {
     const std::size_t open = text.find('(');
     if (open == std::string::npos || text.back() != ')' || text.compare(0, 5, "file:") == 0) {
         SamplerSpec spec = parse_single(text);
-        if (spec.kind == SamplerKind::product) fail(text, "is product(LIGHT,BRDF)");
-        if (spec.kind == SamplerKind::warp) fail(text, "is warp(LIGHT,BRDF)");
+        if (spec.kind == SamplerKind::product) fail(text, "give product(LIGHT,BRDF)");
+        if (spec.kind == SamplerKind::warp) fail(text, "give warp(LIGHT,BRDF)");
         return spec;
     }
     return parse_made(text, open);
@@ -272,7 +273,7 @@ SamplerSpec parse_mis(const std::string& text, std::size_t begin) {
         spec.parts.back().automatic = automatic;
         const SamplerSpec& last = spec.parts.back();
         if (last.kind == SamplerKind::ris || last.kind == SamplerKind::strata)
-            fail(text, "'" + last.text + "' has no density by itself that others could be weighed with");
+            fail(text, "'" + last.text + "' has no pdf, which MIS needs");
         spec.shares.push_back(share);
     }
     if (spec.parts.size() < 2 || spec.parts.size() > kMostParts)
@@ -298,9 +299,10 @@ SamplerSpec parse_sampler(const std::string& text) {
     }
     SamplerSpec spec = parse_part(text);
     if (spec.kind == SamplerKind::compensated)
-        fail(text, "has no support where little light is: mis(compensated,cosine), which is mis-compensated");
+        fail(text,
+             "its pdf is 0 where there is little light; use mis-compensated, which is mis(compensated,cosine)");
     if (spec.mis.kind != ACDF_PARTNER_NONE)
-        fail(text, "has no support where its partner is enough: mis(" + text + ", cosine)");
+        fail(text, "its pdf is 0 where the MIS partner suffices; use mis(" + text + ", cosine)");
     return spec;
 }
 

@@ -14,13 +14,14 @@ namespace acdf::tools {
 enum class SamplerKind {
     full_cdf, ///< full-cdf: the probe's full-resolution CDF, directions below the horizon sampled in vain
     cosine,   ///< cosine: of the hemisphere
-    tiles,    ///< tiles:32x16: of the probe, weighed at each point, the full CDF inside; tiles:12x12(brdf:64KiB):
-              ///< weighed by the BRDF, too
-    visibility_cache,   ///< visibility-cache:32x16: tiles, weighed by what cache points near see of them, too
-    portals,            ///< portals: the light in the scene's portals; portals:uniform: over their solid angle
-    env,                ///< env:64KiB: what `acdf env` makes
-    local,              ///< local:1MB: what `acdf local` makes
-    visibility,         ///< visibility:4MB: what `acdf local --visibility` makes for the scene
+    tiles,    ///< tiles:32x16: of the probe, weighted at each point, the full CDF inside; tiles:12x12(brdf:64KiB):
+              ///< weighted by the BRDF, too
+    visibility_cache, ///< visibility-cache:32x16: tiles, also weighted by how much of them the nearest cache points
+                      ///< see
+    portals,          ///< portals: the light in the scene's portals; portals:uniform: over their solid angle
+    env,              ///< env:64KiB: what `acdf env` makes
+    local,            ///< local:1MB: what `acdf local` makes
+    visibility,       ///< visibility:4MB: what `acdf local --visibility` makes for the scene
     visibility_portals, ///< visibility-portals:4MB: the same with the scene's portals
     brdf,               ///< brdf:64KiB: what `acdf brdf` makes, one for each BRDF of the scene
     brdf_table,         ///< brdf-table[:centre]: the full table of the paper, repaired or as described

@@ -33,7 +33,7 @@ measure::Camera read_camera(const JsonValue& value) {
     const double distance = std::sqrt(dot(forward, forward)), length = std::sqrt(dot(camera.up, camera.up));
     const measure::Vec3 across = cross(forward, camera.up);
     if (!(distance > least && length > least && std::sqrt(dot(across, across)) > least * distance * length))
-        value.fail("looks nowhere, or along its 'up'");
+        value.fail("has no direction: 'from' equals 'to', or 'up' is parallel to the view");
     return camera;
 }
 
@@ -60,7 +60,7 @@ measure::Shape read_box(const JsonValue& value) {
     const measure::Box3 box{point(object.at("low")), point(object.at("high"))};
     object.finish();
     for (std::size_t k = 0; k < 3; ++k)
-        if (!(box.low[k] < box.high[k])) value.fail("has a side whose 'low' is not below its 'high'");
+        if (!(box.low[k] < box.high[k])) value.fail("'low' is not below 'high' on every axis");
     return box;
 }
 
@@ -86,7 +86,7 @@ std::optional<SceneMesh> read_mesh(JsonObject& object) {
         out->file = mesh.at("file").text();
         mesh.if_has("up", [&](const JsonValue& up) {
             const std::string axis = up.text();
-            if (axis != "y" && axis != "z") up.fail("is no axis that points up: y, z");
+            if (axis != "y" && axis != "z") up.fail("is not y or z");
             if (axis == "y") out->up = input::UpAxis::y;
         });
         mesh.finish();
@@ -128,7 +128,7 @@ measure::Portal read_portal(const JsonValue& value) {
     const double across = std::sqrt(dot(portal.across, portal.across)), up = std::sqrt(dot(portal.up, portal.up));
     if (!(across >= 1e-3 && up >= 1e-3)) value.fail("has no area");
     if (!(std::fabs(dot(portal.across, portal.up)) <= 1e-6 * across * up))
-        value.fail("is no rectangle: its sides are not at right angles");
+        value.fail("is not a rectangle: its sides are not at right angles");
     return portal;
 }
 
@@ -138,14 +138,14 @@ input::Projection projection(const JsonValue& value) {
     for (const Projection p : {Projection::automatic, Projection::latlong, Projection::angular,
                                Projection::mirrorball, Projection::cube_cross, Projection::octahedral})
         if (text == input::to_string(p)) return p;
-    value.fail("is no projection: auto, latlong, angular, mirrorball, cube-cross, octahedral");
+    value.fail("is not a projection: auto, latlong, angular, mirrorball, cube-cross, octahedral");
 }
 
 AcdfFilter filter(const JsonValue& value) {
     const std::string text = value.text();
     for (const AcdfFilter f : {ACDF_FILTER_NEAREST, ACDF_FILTER_BILINEAR})
         if (text == build::filter_name(f)) return f;
-    value.fail("is no filter: nearest, bilinear");
+    value.fail("is not a filter: nearest, bilinear");
 }
 
 void read_light(const JsonValue& value, SceneFile& scene) {
@@ -186,7 +186,7 @@ SceneFile parse_scene(const std::string& text) {
     scene.geometry.turned =
         !scene.meshes.empty() && std::all_of(scene.meshes.begin(), scene.meshes.end(),
                                              [](const SceneMesh& mesh) { return mesh.up == input::UpAxis::y; });
-    if (scene.materials.empty()) objects.fail("has nothing that is seen");
+    if (scene.materials.empty()) objects.fail("has no object that the camera sees");
     scene.samples = object.at("samples").count(kMostSamples);
     object.at("samplers").each(kMostSamplers, [&](const JsonValue& value) {
         scene.samplers.push_back(value.text());

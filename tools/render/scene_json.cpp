@@ -33,7 +33,7 @@ Json parse_strict(const std::string& text) {
         if (event == Json::parse_event_t::object_start) keys.emplace_back();
         if (event == Json::parse_event_t::object_end) keys.pop_back();
         if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-            throw SceneError("the key " + shown(parsed.get<std::string>()) + " is there twice");
+            throw SceneError("the key " + shown(parsed.get<std::string>()) + " is given twice");
         return true;
     };
     try {

@@ -41,10 +41,10 @@ std::string sentence_of(const Sweep& sweep, const Recommended& recommended) {
     const double variance = variance_in(best, open_alone, sweep.numbers);
     std::string has = "a relative variance of " + short_number(variance) + ", " + noise_text(variance, v.spp) +
                       " noise at " + spp_text(v);
-    if (sweep.numbers == measure::Numbers::sobol) has += " of a scrambled Sobol' sequence";
+    if (sweep.numbers == measure::Numbers::sobol) has += " from a scrambled Sobol' sequence";
     if (!recommended.reached)
         return "No size tried gets below " + percent(v.threshold) + " noise at " + spp_text(v) + ": the best, " +
-               size + ", has " + has + ". Larger --budgets, or more samples, would.";
+               size + ", has " + has + ". Larger --budgets or more samples per pixel would.";
     if (!tried_larger(sweep, best)) return size + " is enough: it reaches " + has + ".";
     return size + " reaches " + has + "; beyond it you gain nothing visible.";
 }
@@ -65,17 +65,16 @@ std::string picture_sentence(const Sweep& sweep, const Recommended& recommended)
 std::string picture_rule(const Sweep& sweep) {
     const VisibleNoise& v = sweep.visible;
     std::string text =
-        "Rule: the file tried that takes least memory, or one of up to a quarter more with less noise, whose noise "
-        "on a "
-        "diffuse surface is at most 5 % above the least of "
-        "all files, or at most " +
+        "Rule: among the files whose noise on a diffuse surface is low enough, the one that takes least memory, or "
+        "one of up to a quarter more with less noise. Low enough is at most 5 % above the least noise of all "
+        "files, or at most " +
         percent(v.threshold) + " at " + spp_text(v) +
-        ", in each of four situations: nothing hidden and behind the sphere and the wall of the demo "
-        "scene, with samples of the light alone and with half of them the surface's own. ";
-    text += sweep.timed ? "Noise is that after the same time, of which a sample takes " +
-                              short_number(sweep.costs.shadow_ray_ns) + " ns beside its sampling (--shadow-ray-ns)."
-                        : "Noise is that after the same samples: nothing was timed.";
-    if (sweep.numbers == measure::Numbers::sobol) text += " Samples are of a scrambled Sobol' sequence.";
+        ", in each of four situations: with nothing hidden, and behind the sphere and the wall of the demo scene; "
+        "each with samples of the light alone, and with half of the samples from the cosine. ";
+    text += sweep.timed ? "Noise is compared after the same time. Besides sampling, each sample costs " +
+                              short_number(sweep.costs.shadow_ray_ns) + " ns (--shadow-ray-ns)."
+                        : "Noise is compared after the same number of samples, as nothing was timed.";
+    if (sweep.numbers == measure::Numbers::sobol) text += " Samples come from a scrambled Sobol' sequence.";
     return text;
 }
 
@@ -85,9 +84,10 @@ std::string rule_of(const Sweep& sweep) {
                        "sqrt(relative variance / " +
                        std::to_string(v.spp) + ") of a pixel, is at most " + percent(v.threshold) + " of its value";
     if (v.threshold == 0.01) text += ": about half a step of 8-bit sRGB at middle grey";
-    text += ". In numbers: a relative variance of at most " + short_number(v.largest_variance()) + ".";
+    text += ". That is a relative variance of at most " + short_number(v.largest_variance()) + ".";
     if (sweep.numbers == measure::Numbers::sobol)
-        text += " Samples are of a scrambled Sobol' sequence: it is variance times samples.";
+        text += " Samples come from a scrambled Sobol' sequence: the relative variance is then the variance times "
+                "the number of samples.";
     return text;
 }
 
@@ -125,10 +125,10 @@ std::string named(const Sweep& sweep, const Advice& advice, Verdict verdict) {
 
 /// Who wins at equal time; a sentence for each way it can end.
 void add_time_findings(const Sweep& sweep, Advice& advice, const SweepRow& best) {
-    const std::string than = " Figures are the baseline's variance over that of the " +
+    const std::string than = " Figures are the variance of the baseline divided by that of the " +
                              to_readable_size(best.file_bytes > 0 ? best.file_bytes : best.bytes) +
-                             " file after the same time, of which a sample takes " +
-                             short_number(sweep.costs.shadow_ray_ns) + " ns beside its sampling.";
+                             " file after the same time. Besides sampling, each sample costs " +
+                             short_number(sweep.costs.shadow_ray_ns) + " ns.";
     const std::string baselines = named(sweep, advice, Verdict::baseline),
                       even = named(sweep, advice, Verdict::even), ours = named(sweep, advice, Verdict::ours);
     if (!baselines.empty()) advice.findings.push_back("At equal time a baseline wins: " + baselines + "." + than);
@@ -138,7 +138,7 @@ void add_time_findings(const Sweep& sweep, Advice& advice, const SweepRow& best)
     for (const BaselineComparison& c : advice.comparisons)
         if (std::isinf(sweep.rows[c.row].shaded()))
             advice.findings.push_back(capital(sweep.rows[c.row].label) +
-                                      " is biased by itself: it has no density where there is light.");
+                                      " is biased if used alone: its pdf is 0 in directions with light.");
 }
 
 /// Who wins sample for sample, whatever the time.
@@ -152,9 +152,9 @@ std::string sample_finding(const Sweep& sweep, const SweepRow& best) {
             names += (names.empty() ? "" : "; ") + baseline.label + " (" +
                      short_number(baseline.relative_variance) + ", " + to_readable_size(baseline.bytes) + ")";
     if (names.empty())
-        return "Sample for sample no baseline is less noisy " + of + " (relative variance " +
+        return "At equal samples no baseline is less noisy " + of + " (relative variance " +
                short_number(best.relative_variance) + ").";
-    return "Sample for sample these are less noisy " + of + " (relative variance " +
+    return "At equal samples these are less noisy " + of + " (relative variance " +
            short_number(best.relative_variance) + "): " + names + ".";
 }
 
@@ -181,26 +181,25 @@ void add_findings(const Sweep& sweep, Advice& advice) {
     for (const SituationAdvice& one : advice.situations) advice.findings.push_back(one.sentence);
     if (!advice.situations.empty())
         advice.findings.push_back(
-            "What noise is left in these is not the file's: files that know the normal lower it, "
-            "`acdf sweep --kind local`.");
+            "The rest of the noise comes from the cosine, which an environment file does not take into account. "
+            "Files with a pdf for each normal lower it: see `acdf sweep --kind local`.");
     advice.findings.push_back(sample_finding(sweep, best));
     add_time_findings(sweep, advice, best);
     if (advice.situations.empty()) add_own_finding(sweep, advice);
     if (sweep.kind == SweepKind::brdf)
         advice.findings.push_back(
-            "All of this is under light that is the same from everywhere. Under other light mix with samples of "
-            "the "
-            "light, by the exact densities that each file stores; `acdf render` shows it on scenes.");
+            "These figures are for uniform light. Under other light, combine the file with samples of the light by "
+            "MIS, as its pdfs are exact; `acdf render` compares such samplers on scenes.");
     else if (sweep.kind == SweepKind::visibility)
         advice.findings.push_back(
-            "All of this is on the scene as the file knows it, matte, with points all over it: `acdf render` shows "
-            "what a camera sees, with portals and caches of visibility, too. Where the scene moves, the file stays "
-            "unbiased and becomes noisier.");
+            "These figures are for the scene as it was when the file was made, with diffuse materials and points "
+            "all over it. `acdf render` measures what a camera sees, also with portals and visibility caches. "
+            "Where the scene moves, the file stays unbiased and becomes noisier.");
     else if (sweep.kind == SweepKind::local)
         advice.findings.push_back(
-            "All of this is without occluders. Where what is brightest is hidden, samplers that follow the light "
-            "closely lose most of their lead over a plain CDF: mix with cosine or BRDF samples there, by the exact "
-            "densities that each file stores; `acdf render` shows it on scenes.");
+            "These figures are without occluders. Where the brightest light is hidden, samplers that follow the "
+            "light closely lose most of their lead over a plain CDF. Combine them there with cosine or BRDF "
+            "samples by MIS, as the pdfs of the file are exact; `acdf render` compares such samplers on scenes.");
 }
 
 } // namespace

@@ -19,7 +19,7 @@ using measure::LightSampler;
 using measure::PointSampler;
 using measure::ShadingPoint;
 
-/// What a density makes of the light itself, as build::measure_environment has it.
+/// Accuracy of a pdf on the light itself, as in build::measure_environment.
 struct LightAccuracy {
     double relative_variance = 0.0, max_weight = 0.0, rms = 0.0;
 };
@@ -45,7 +45,7 @@ LightAccuracy light_accuracy(const Target& target, const std::vector<float>& pea
     LightAccuracy out;
     const double mean_square = target.mean_square > 0.0 ? target.mean_square : flux * flux;
     out.relative_variance = second.value() / mean_square - 1.0;
-    // Densities are floats, and so are CDFs: what they round is no variance worth telling.
+    // Pdfs and CDFs are floats: a variance as small as their rounding is reported as 0.
     if (out.relative_variance < 1e-9) out.relative_variance = 0.0;
     out.max_weight = peak / std::sqrt(mean_square);
     if (violated) out.relative_variance = out.max_weight = HUGE_VAL;
@@ -53,8 +53,8 @@ LightAccuracy light_accuracy(const Target& target, const std::vector<float>& pea
     return out;
 }
 
-/// Half of the samples from a sampler of light, half from the cosine, each weighed by the density of both: the
-/// balance heuristic with one sample (Veach and Guibas, SIGGRAPH 1995).
+/// Half of the samples from a sampler of light, half from the cosine, each weighted by both pdfs with the balance
+/// heuristic, one sample (Veach and Guibas, SIGGRAPH 1995).
 struct HalfCosine {
     std::shared_ptr<const LightSampler> light, cosine;
     std::uint64_t bytes() const { return light->bytes(); }

@@ -156,17 +156,14 @@ void add_pictures(Sweep& sweep, const compress::Reflected& reflected, const std:
     const DensityImage full = draw_density(map, own);
     sweep.range = automatic_range(full);
     add_colour_bar(sweep);
-    add_picture(
-        sweep, full, {}, {}, "The BRDF itself times cosine, seen from 45 degrees",
-        "The directions of light that are reflected to a view at 45 degrees, in false colour; the lower half "
-        "is below the surface.");
+    add_picture(sweep, full, {}, {}, "The BRDF itself times cosine, seen from 45 degrees",
+                "How much light from each direction is reflected to a view at 45 degrees, in false colour; the "
+                "lower half is below the surface.");
     for (std::size_t i : pictured(candidates, sweep)) {
         const PlottedView plotted{candidates[i].file->file.brdf(), angles};
-        add_picture(
-            sweep, draw_density(map, pdf_of(plotted)), knot_opacity(plotted, map), {},
-            picture_title(candidates[i].row),
-            "The density that this file has for the same view, in the same colours, with the borders of its "
-            "cells.");
+        add_picture(sweep, draw_density(map, pdf_of(plotted)), knot_opacity(plotted, map), {},
+                    picture_title(candidates[i].row),
+                    "The pdf of this file for the same view, in the same colours, with the borders of its cells.");
     }
 }
 
@@ -203,7 +200,7 @@ Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const bui
     std::vector<SampledPoint> sampled;
     for (Candidate& baseline : baselines(brdf, reflected, options.views, sampled))
         candidates.push_back(std::move(baseline));
-    part(0.8, 0.0)(0.0, "drawing");
+    part(0.8, 0.0)(0.0, "plotting");
     add_sobol(reflected, sampled, options, candidates);
     if (options.pictures) add_pictures(sweep, reflected, candidates);
     std::vector<ShadingPoint> points;

@@ -50,7 +50,7 @@ std::vector<std::uint64_t> default_budgets(SweepKind kind) {
 
 StoredFile::StoredFile(std::vector<std::uint8_t> made) : bytes(std::move(made)) {
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
-        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+        throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
 }
 
 Candidate file_candidate(std::vector<std::uint8_t> bytes) {
@@ -183,7 +183,7 @@ void add_picture(Sweep& sweep, const DensityImage& image, const std::vector<floa
     if (!knots.empty()) draw_knots(picture, knots);
     if (!horizon.empty()) draw_horizon(picture, horizon);
     sweep.pictures.push_back({std::move(title), std::move(description), image.map.width, image.map.height,
-                              encode_png(picture, {"acdf", "density in false colour"})});
+                              encode_png(picture, {"acdf", "pdf in false colour"})});
 }
 
 void add_colour_bar(Sweep& sweep) {

@@ -74,8 +74,9 @@ std::string budget_text(std::uint64_t bytes);
 /// Cells that a budget pays for in curves of their own, about 4.4 bytes each beside what any file takes.
 std::uint32_t cells_in(std::uint64_t budget);
 
-/// Which files are pictured beside the source: the smallest and the recommended one of the first fit, and where the
-/// paper's fit was asked for the one nearest to the latter in size. Indices of candidates that are there.
+/// Which files are pictured beside the source: the smallest and the recommended one of the first fit. Where the
+/// paper's fit was asked for, also its file nearest in size to the recommended one. Indices of candidates that are
+/// there.
 std::vector<std::size_t> pictured(const std::vector<Candidate>& candidates, const Sweep& sweep);
 
 constexpr int kPictureWidth = 640;

@@ -177,11 +177,10 @@ Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress
     sweep.description += ", resampled from " + std::to_string(probe.source_width) + " x " +
                          std::to_string(probe.source_height) + " " + input::to_string(probe.projection);
     char least[240];
-    std::snprintf(
-        least, sizeof least,
-        "the probe was resampled: no density that is constant on %d x %d texels has less than %.3g, of the light "
-        "itself; points and baselines take these texels for what is looked up",
-        probe.width, probe.height, compress::least_second_moment(builder::grid_of(target)) - 1.0);
+    std::snprintf(least, sizeof least,
+                  "the probe was resampled: a pdf that is constant on %d x %d texels has a relative variance of at "
+                  "least %.3g of the light itself; points and baselines use these texels as the light",
+                  probe.width, probe.height, compress::least_second_moment(builder::grid_of(target)) - 1.0);
     sweep.notes.push_back(least);
     return sweep;
 }
@@ -233,7 +232,7 @@ void run(SweepArguments& options) {
     } else if (!options.quiet) {
         const Advice advice = advise(sweep);
         put(advice.sentence + "\n  " + advice.command + "\n" + path("report.html") +
-            " shows the trade; the numbers are in " + path("sweep.csv") + " and " + path("sweep.json") + "\n");
+            " compares them; the numbers are in " + path("sweep.csv") + " and " + path("sweep.json") + "\n");
     }
 }
 

@@ -64,12 +64,12 @@ void add_pictures(Sweep& sweep, const compress::Target& target, const std::vecto
     sweep.range = automatic_range(full);
     add_colour_bar(sweep);
     add_picture(sweep, full, {}, {}, "The probe itself, full resolution",
-                "The probe's own density in false colour, latitude and longitude.");
+                "The probe's own pdf in false colour, as a lat-long map.");
     for (std::size_t i : pictured(candidates, sweep)) {
         const EnvironmentView view = candidates[i].file->file.environment();
         add_picture(sweep, draw_density(map, pdf_of(view)), knot_opacity(view, map), {},
                     picture_title(candidates[i].row),
-                    "The density that this file stores, in the same colours, with the borders of its cells.");
+                    "The pdf that this file stores, in the same colours, with the borders of its cells.");
     }
 }
 

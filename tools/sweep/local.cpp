@@ -67,7 +67,7 @@ Candidate make_file(const builder::Target& target, const builder::Source& source
     return out;
 }
 
-/// What a surface sees of the target, at full resolution: the density that all samplers approach.
+/// What a surface sees of the target, at full resolution: the pdf that all samplers approach.
 Density reflected_pdf(const compress::Target& target, const Normal& n) {
     const Density light = pdf_of(target);
     const double length = std::hypot(double{n[0]}, double{n[1]}, double{n[2]});
@@ -98,10 +98,10 @@ void add_local_pictures(Sweep& sweep, const compress::Target& target, const std:
                 "What a diffuse surface reflects of the probe, in false colour; the white line is its horizon.");
     for (std::size_t i : pictured(candidates, sweep)) {
         const PlottedNormal plotted{candidates[i].file->file.local(), normal};
-        add_picture(sweep, draw_density(map, pdf_of(plotted)), knot_opacity(plotted, map), horizon,
-                    picture_title(candidates[i].row),
-                    "The density that this file has for the same normal, in the same colours, with the borders of "
-                    "its cells.");
+        add_picture(
+            sweep, draw_density(map, pdf_of(plotted)), knot_opacity(plotted, map), horizon,
+            picture_title(candidates[i].row),
+            "The pdf of this file for the same normal, in the same colours, with the borders of its cells.");
     }
 }
 
@@ -139,7 +139,7 @@ Sweep sweep_local(const builder::Target& fitted, const builder::Source& source, 
     part(0.8, 0.0)(0.0, "measuring baselines");
     sweep.reference = candidates.size();
     for (Candidate& baseline : local_baselines(target, normals)) candidates.push_back(std::move(baseline));
-    part(0.85, 0.0)(0.0, "drawing");
+    part(0.85, 0.0)(0.0, "plotting");
     add_sobol(target, normals, options, candidates);
     if (options.pictures) add_local_pictures(sweep, target, candidates);
     finish_rows(sweep, std::move(candidates), timed_points(), options, part(0.9, 0.1));

@@ -23,7 +23,7 @@ std::string interval_html(const Interval& i) {
     return short_number(i.value) + " <small>" + short_number(i.low) + " to " + short_number(i.high) + "</small>";
 }
 
-/// What is between backticks is code.
+/// Text between backticks becomes code.
 std::string prose(const std::string& text) {
     std::string out;
     bool code = false;
@@ -42,7 +42,7 @@ const char* kind_text(SweepKind kind) {
 }
 
 const char* conditions_text(SweepKind kind) {
-    return kind == SweepKind::brdf ? "views" : kind == SweepKind::visibility ? "visibility" : "normals";
+    return kind == SweepKind::brdf ? "views" : kind == SweepKind::visibility ? "positions" : "normals";
 }
 
 std::string fact(const std::string& name, const std::string& value, const std::string& small) {
@@ -72,7 +72,7 @@ std::string facts_html(const Sweep& sweep, const Advice& advice) {
         out += fact("With a scrambled Sobol' sequence", noise_text(sobol, sweep.visible.spp),
                     "noise at " + std::to_string(sweep.visible.spp) + " samples per pixel" + where);
     if (std::isfinite(base.shaded() / best.shaded()))
-        out += fact("Sample for sample", noise_ratio_text(base.shaded() / best.shaded()), "the " + base.label);
+        out += fact("At equal samples", noise_ratio_text(base.shaded() / best.shaded()), "the " + base.label);
     if (const Interval time = ratio_interval(best.times.sample, base.times.sample); time.known())
         out += fact("Time a sample", short_number(time.value) + " \xC3\x97",
                     "the time of the " + base.label + "; 95 % confidence " + short_number(time.low) + " to " +
@@ -114,7 +114,7 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
                        std::to_string(sweep.visible.spp) + " spp"});
     out.push_back(
         {"weight", "Fireflies",
-         "The largest weight f/p that a sample can have, over the mean: what a single pixel may flash by.",
+         "The largest weight f/p that a sample can have, over the mean: it bounds how bright a firefly can be.",
          "largest weight", [](const Sweep&, const SweepRow& r) { return only(r.max_weight); }});
     if (!sweep.timed) return out;
     out.push_back({"sample", "Time of a sample",
@@ -124,14 +124,15 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
                    "Variance times time, in units of one sample of the " + base + ". " +
                        (sweep.kind == SweepKind::environment ? "Of irradiance on a diffuse surface. " : "") +
                        "A sample takes " + short_number(sweep.costs.shadow_ray_ns) +
-                       " ns beside its sampling: a shadow ray, a BRDF (--shadow-ray-ns).",
+                       " ns besides its sampling: a shadow ray, a BRDF (--shadow-ray-ns).",
                    "variance at equal time", [](const Sweep& s, const SweepRow& r) {
                        const Interval t = cost_ratio(r, s.rows[s.reference], open_alone, s.costs);
                        return Interval{t.value * r.shaded(), t.low * r.shaded(), t.high * r.shaded()};
                    }});
-    out.push_back({"pdf", "Time of a density",
-                   "What multiple importance sampling asks for; samplers without a density are missing.",
-                   "ns a density", [](const Sweep&, const SweepRow& r) { return median_interval(r.times.pdf); }});
+    out.push_back(
+        {"pdf", "Time of a pdf",
+         "Multiple importance sampling needs the pdf of each sample; samplers without a pdf are left out.",
+         "ns a pdf", [](const Sweep&, const SweepRow& r) { return median_interval(r.times.pdf); }});
     out.push_back({"build", "Time to build a file", "All cores, once; accuracy measured.", "seconds",
                    [](const Sweep&, const SweepRow& r) { return only(r.build_seconds); }});
     return out;
@@ -145,11 +146,10 @@ std::string legend_html(const Sweep& sweep) {
 }
 
 std::string charts_html(const Sweep& sweep, const Advice& advice) {
-    std::string out =
-        "<section>\n<h2>Size, noise and time</h2>\n<p class=\"soft\">Lines are files of acdf; letters "
-        "are what renderers use without it; the ring is the recommended file. Point at anything for "
-        "its numbers.</p>\n" +
-        legend_html(sweep) + "<div class=\"grid\">\n";
+    std::string out = "<section>\n<h2>Size, noise and time</h2>\n<p class=\"soft\">Lines are files of acdf; "
+                      "letters are the baselines, which renderers use today; the ring is the recommended file. "
+                      "Move the pointer to a mark to see its numbers.</p>\n" +
+                      legend_html(sweep) + "<div class=\"grid\">\n";
     for (const Chart& chart : charts_of(sweep)) {
         const std::string svg = chart_svg(sweep, chart, advice.recommended.row);
         if (svg.empty()) continue;
@@ -160,10 +160,9 @@ std::string charts_html(const Sweep& sweep, const Advice& advice) {
 
 std::string pictures_html(const Sweep& sweep) {
     if (sweep.pictures.empty()) return "";
-    std::string out =
-        "<section>\n<h2>What is stored</h2>\n<p class=\"soft\">Density per steradian, on a logarithmic "
-        "scale; lines are the borders of cells, where those are large enough to see.</p>\n"
-        "<div class=\"grid pictures\">\n";
+    std::string out = "<section>\n<h2>What is stored</h2>\n<p class=\"soft\">Pdf per steradian, on a logarithmic "
+                      "scale. Lines are the borders of cells that are large enough to see.</p>\n"
+                      "<div class=\"grid pictures\">\n";
     for (const SweepPicture& picture : sweep.pictures)
         out += "<figure>" + element("h3", picture.title) +
                html_image(picture.png, picture.width, picture.height, picture.title + ". " + picture.description) +
@@ -188,12 +187,12 @@ std::string verdict_html(Verdict verdict) {
 }
 
 std::string comparisons_html(const Sweep& sweep, const Advice& advice) {
-    std::string out = "<section>\n<h2>Beside what renderers use today</h2>\n<ul class=\"say\">\n";
+    std::string out = "<section>\n<h2>Compared with what renderers use today</h2>\n<ul class=\"say\">\n";
     for (const std::string& finding : advice.findings) out += "<li>" + prose(finding) + "</li>\n";
     out +=
-        "</ul>\n<p class=\"soft\">Each baseline over the recommended file: more than 1 speaks for the file. Ratios "
-        "of "
-        "times have the interval that holds the median with 95 % confidence; variances are exact.</p>\n"
+        "</ul>\n<p class=\"soft\">Each figure is that of the baseline divided by that of the recommended file: "
+        "above 1 the file is better. Ratios of times have the interval that holds the median with 95 % confidence; "
+        "variances are exact.</p>\n"
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Baselines\"><table id=\"baselines\">\n"
         "<thead><tr><th>baseline</th><th>memory</th><th>variance</th>";
     if (sweep.timed) out += "<th>time a sample</th><th>variance at equal time</th><th class=\"text\">better</th>";
@@ -226,7 +225,7 @@ std::string cell_html(const SweepColumn& column, const Sweep& sweep, const Sweep
     return "<td" + exact + ">" + (number == number ? short_number(number) : "") + "</td>";
 }
 
-/// Columns of which no row knows anything are left out.
+/// Columns that are empty in all rows are left out.
 std::vector<SweepColumn> shown_columns(const Sweep& sweep) {
     std::vector<SweepColumn> out;
     for (const SweepColumn& column : columns_of(sweep))
@@ -262,35 +261,36 @@ std::string rows_html(const Sweep& sweep, const Advice& advice) {
 std::string method_html(const Sweep& sweep) {
     std::vector<std::string> lines;
     const std::string conditions = std::to_string(sweep.conditions);
-    lines.push_back(
-        "Relative variance is that of one sample of the estimator over its squared mean; n samples have it "
-        "over n. It is summed over the whole source, not estimated: it has no noise of its own.");
+    lines.push_back("The relative variance is the variance of one sample of the estimator over its squared mean; "
+                    "the mean of n samples has an n-th of it. It is an exact sum over the source, not an estimate: "
+                    "it has no noise of its own.");
     if (sweep.kind == SweepKind::environment)
         lines.push_back(
             "On a diffuse surface: the same of the irradiance, light times cosine above the horizon, mean over " +
             conditions +
-            " random normals. With an MIS partner: half of the samples are cosine distributed, all weighed by the "
-            "balance "
-            "heuristic. Behind occluders: points of the demo scene, a sphere on a plane beside a wall; there "
+            " random normals. With an MIS partner: half of the samples are cosine distributed, all weighted by the "
+            "balance heuristic. Behind occluders: points of the demo scene, a sphere on a plane beside a wall; "
+            "there "
             "variances "
             "are divided by E^2 + (0.1 mean E)^2, E of the point, so that a few nearly black ones do not decide. "
-            "Columns "
-            "named sobol (in sweep.csv) are variance times samples with scrambled Sobol' points, at " +
-            std::to_string(sweep.visible.spp) + " samples, by taking them.");
+            "Columns named sobol (in sweep.csv) are the variance of an estimate with scrambled Sobol' points times "
+            "its number of samples, measured with " +
+            std::to_string(sweep.visible.spp) + " samples.");
     else
-        lines.push_back(std::string("Means are over ") + conditions + " random " + conditions_text(sweep.kind) +
-                        ", none chosen for what a file stores. With Sobol' points: variance times samples with a "
-                        "scrambled Sobol' sequence, at " +
-                        std::to_string(sweep.visible.spp) + " samples, by taking them.");
-    if (sweep.timed)
         lines.push_back(
-            "Times: one thread, all samplers in turn within each of many rounds, so that what slows the "
-            "machine slows all; sixteen samples (or densities) at each shading point, what a sampler does "
-            "once a point included; tables are as warm as that leaves them. Intervals hold the median "
-            "with 95 % confidence (order statistics); ratios are taken within rounds. They are of this "
-            "machine; --no-timing leaves them out.");
-    lines.push_back("A sampler is called biased where there is light but no density: no number of samples mends "
-                    "that.");
+            std::string("Means are over ") + conditions + " random " + conditions_text(sweep.kind) +
+            ", chosen independently of the normals or views that files store. With Sobol' points: the variance of "
+            "an estimate with a scrambled Sobol' sequence times its number of samples, measured with " +
+            std::to_string(sweep.visible.spp) + " samples.");
+    if (sweep.timed)
+        lines.push_back("Times: one thread, all samplers in turn within each of many rounds, so that a slower "
+                        "moment of the machine affects all of them. Each shading point takes sixteen samples (or "
+                        "pdfs), and the work that a sampler does once a point is included; caches are as warm as "
+                        "that leaves them. Intervals hold the median "
+                        "with 95 % confidence (order statistics); ratios are taken within rounds. Times are those "
+                        "of this machine; --no-timing leaves them out.");
+    lines.push_back(
+        "A sampler is biased if its pdf is 0 in a direction with light: more samples do not remove that error.");
     for (const std::string& note : sweep.notes) lines.push_back(note);
     std::string out = "<section>\n<h2>How this was measured</h2>\n<ul class=\"say soft\">\n";
     for (const std::string& text : lines) out += element("li", text) + "\n";

@@ -1,4 +1,4 @@
-// One page that tells a user what a sweep found: plots, pictures, a recommendation. It stands alone: no network, no
+// One page that reports what a sweep found: plots, pictures, a recommendation. It stands alone: no network, no
 // scripts.
 #pragma once
 

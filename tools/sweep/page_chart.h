@@ -9,7 +9,7 @@
 
 namespace acdf::tools {
 
-/// Rows that are drawn alike: a fit's, connected, or those of one baseline.
+/// Rows that are plotted alike: a fit's, connected, or those of one baseline.
 struct ReportSeries {
     bool ours = false;
     std::size_t index = 0; ///< among fits, or among baselines: gives shape and colour, or the letter

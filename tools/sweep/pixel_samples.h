@@ -27,9 +27,9 @@ double sampled_mean(const measure::PointSampler& sampler, measure::Random& rando
 /// Without bias, of at least two numbers.
 double unbiased_variance(const std::vector<double>& values);
 
-/// The variance of an estimate of `samples` scrambled Sobol' points times their number, over the squared integral,
-/// mean over points, of which those without light have 0; from `seeds` (at least 2) estimates. With independent
-/// numbers it is the relative variance of one sample. The same for any number of threads.
+/// The variance of an estimate of `samples` scrambled Sobol' points times their number, over the squared integral:
+/// the mean over points, where those without light count as 0. It is estimated from `seeds` (at least 2) estimates.
+/// With independent numbers it is the relative variance of one sample. The same for any number of threads.
 double sobol_variance(const measure::LightSampler& sampler, const std::vector<SampledPoint>& points,
                       const SampledIntegrand& integrand, std::uint32_t samples, std::uint32_t seeds);
 

@@ -24,11 +24,11 @@ const char* where_text(Situation situation) {
     case open_alone:
         return "Nothing hidden, samples of the light alone";
     case open_partner:
-        return "Nothing hidden, half of the samples the surface's own (balance heuristic)";
+        return "Nothing hidden, half of the samples from the cosine (MIS, balance heuristic)";
     case hidden_alone:
         return "Behind the demo scene's sphere and wall, samples of the light alone";
     default:
-        return "Behind the demo scene's sphere and wall, half of the samples the surface's own";
+        return "Behind the demo scene's sphere and wall, half of the samples from the cosine";
     }
 }
 
@@ -40,7 +40,7 @@ std::string sentence_of(const Sweep& sweep, const SituationAdvice& s) {
                        noise_texts(s.lit.median) + ")";
     if (s.lit.sobol == s.lit.sobol)
         text += ", " + noise_text(s.lit.sobol, sweep.visible.spp) + " at " + std::to_string(sweep.visible.spp) +
-                " of a scrambled Sobol' sequence";
+                " samples of a scrambled Sobol' sequence";
     const char* after = sweep.timed ? "After the same time: " : "After the same samples: ";
     text += std::string(". ") + after + noise_ratio_text(s.over_reference.value) + " the " + base.label;
     if (!s.has_baseline) return text + ".";
@@ -57,7 +57,7 @@ const char* to_string(Situation situation) {
 }
 
 std::string noise_ratio_text(double variance_ratio) {
-    if (!(variance_ratio == variance_ratio)) return "unknown noise beside";
+    if (!(variance_ratio == variance_ratio)) return "an unknown noise ratio to";
     if (std::isinf(variance_ratio)) return "no bias, unlike";
     const double ratio = std::sqrt(variance_ratio);
     if (ratio > 1.0 / 1.005 && ratio < 1.005) return "the same noise as";

@@ -41,7 +41,7 @@ std::vector<SurfacePoint> in_the_open(const std::vector<build::Normal>& normals)
 
 namespace {
 
-/// Integrals over what a point sees. With p + b in the place of p, weights of the balance heuristic are p / (p +
+/// Integrals over what a point sees. With p + b instead of p, weights of the balance heuristic are p / (p +
 /// b).
 struct Sums {
     compress::Sum irradiance, alone, partner, sampled, cosine;

@@ -1,5 +1,5 @@
-// Exact variances of what a diffuse surface reflects, from a density that is known at every texel: alone and in
-// partner of the surface's own samples, in the open and where something is in the way.
+// Exact variances of what a diffuse surface reflects, from a pdf that is known at every texel: used alone and
+// combined with the surface's own samples, in the open and behind occluders.
 #pragma once
 
 #include "build/accuracy/local.h"
@@ -17,7 +17,7 @@ namespace acdf::tools {
 /// The direction of the middle of a texel.
 std::array<float, 3> texel_middle(const compress::Target& target, std::uint32_t row, std::uint32_t column);
 
-/// The density of a sampler that does not know the normal, in sr^-1, in the middle of each texel (its z halves the
+/// The pdf of a sampler that is not given the normal, in sr^-1, in the middle of each texel (its z halves the
 /// texel's solid angle).
 std::vector<float> texel_pdfs(const compress::Target& target, const measure::LightSampler& sampler);
 
@@ -27,16 +27,15 @@ struct SurfacePoint {
     std::vector<bool> hidden; ///< one a texel, row-major; empty: nothing is
 };
 
-/// Points of a target's map with nothing in the way.
+/// Points of a target's map without occluders.
 std::vector<SurfacePoint> in_the_open(const std::vector<build::Normal>& normals);
 
 /// The irradiance E is the integral of f = L max(0, n . omega) visibility. Variances are those of one sample; n
-/// have an n-th of it. Infinite where light has no density.
+/// have an n-th of it. Infinite where there is light and the pdf is 0.
 struct PointVariance {
     double irradiance = 0.0;
     double alone = 0.0;   ///< of f/p
-    double partner = 0.0; ///< half of the samples taken by p, half by the cosine, weighed by the
-                          ///< balance heuristic
+    double partner = 0.0; ///< half of the samples taken by p, half by the cosine, weighted by the balance heuristic
 };
 
 /// By summation over texels with each one's cosine in its middle. L^2 is the target's mean square over a texel. The

@@ -13,10 +13,10 @@ struct SampledVariances {
     double alone = 0.0, partner = 0.0;
 };
 
-/// The variance of an estimate of `samples` (rounded up to an even number) times their number, over E^2 as
-/// `summary` scales it, mean over points: with independent numbers those of `exact`, which is of the same points;
-/// here of scrambled Sobol' points. Over `seeds` (at least 2) estimates. With an MIS partner half of the samples
-/// are the cosine's. `light` is what they find. The same for any number of threads.
+/// The variance of an estimate of `samples` (rounded up to an even number) scrambled Sobol' points times their
+/// number, over E^2 as `summary` scales it, mean over points. With independent numbers it would be that of `exact`,
+/// which is of the same points. Over `seeds` (at least 2) estimates. With an MIS partner half of the samples are
+/// the cosine's. `light` is what they find. The same for any number of threads.
 SampledVariances sobol_variances(const compress::Target& target, const measure::MapLight& light,
                                  const measure::LightSampler& sampler, const std::vector<SurfacePoint>& points,
                                  const std::vector<PointVariance>& exact, Scale scale, std::uint32_t samples,

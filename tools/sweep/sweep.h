@@ -36,11 +36,11 @@ std::vector<std::uint64_t> default_budgets(SweepKind kind);
 /// Times of one sampler in rounds that it shared with all others, so that ratios within a round mean something.
 struct SweepTimes {
     std::vector<double> sample; ///< ns a sample, one a round; empty: not timed
-    std::vector<double> pdf;    ///< ns a density; empty: not timed, or the sampler has none
+    std::vector<double> pdf;    ///< ns a pdf; empty: not timed, or the sampler has none
 };
 
-/// How a renderer uses the light's samples: on a diffuse surface, with nothing in the way or behind what hides
-/// light in the demo scene, alone or with an MIS partner of as many samples of the surface (balance heuristic).
+/// How a renderer uses the light's samples on a diffuse surface: without occluders, or behind those of the demo
+/// scene; alone, or with an MIS partner of as many samples of the surface (balance heuristic).
 enum Situation : std::size_t { open_alone, open_partner, hidden_alone, hidden_partner, kSituations };
 
 /// Relative variance of one sample over points of a surface, exact. Infinite: biased.
@@ -60,15 +60,15 @@ struct SweepRow {
         0; ///< in memory: of a file with the tables made at load, of a baseline what sampling reads
     std::uint64_t file_bytes = 0; ///< of acdf: of the file alone
     std::uint64_t cells = 0;      ///< of acdf
-    /// Of one sample over the squared mean, exact. Infinite: biased, light without density. Environment: of the
-    /// light itself; local and BRDF: of what a surface reflects, mean over normals or views.
+    /// Of one sample over the squared mean, exact. Infinite: biased, as the pdf is 0 where there is light.
+    /// Environment: of the light itself; local and BRDF: of what a surface reflects, mean over normals or views.
     double relative_variance = kUnknown;
     double worst = kUnknown;          ///< the same for the worst normal or view
     double median = kUnknown;         ///< local and BRDF: over normals or views
     double sobol = kUnknown;          ///< local and BRDF: of scrambled Sobol' points, as in Lit
     std::array<Lit, kSituations> lit; ///< environment: of a diffuse surface
     double max_weight = kUnknown;     ///< largest f/p over its mean
-    double rms = kUnknown;            ///< of the density's error, sr^-1
+    double rms = kUnknown;            ///< of the pdf's error, sr^-1
     double build_seconds = kUnknown;
     SweepTimes times;
 
@@ -80,7 +80,7 @@ struct SweepRow {
     }
 };
 
-/// A density in false colour, knots overlaid.
+/// A pdf in false colour, with the borders of cells.
 struct SweepPicture {
     std::string title, description;
     int width = 0, height = 0;
@@ -98,7 +98,7 @@ struct VisibleNoise {
 /// What counts at equal time beside the sampling of light's samples.
 struct SampleCosts {
     double shadow_ray_ns = 500.0; ///< what else a sample costs: a ray, a BRDF
-    double cosine_ns = 0.0;       ///< to sample one of the surface's samples and to evaluate its density
+    double cosine_ns = 0.0;       ///< to sample one of the surface's samples and to evaluate its pdf
 };
 
 struct Sweep {
@@ -143,7 +143,7 @@ struct SweepOptions {
 /// that are out of reach are noted and left out. Throws Failure where none is left.
 Sweep sweep_environment(const builder::Target& target, const builder::Source& source, const SweepOptions& options,
                         const build::Progress& progress = {});
-/// The same for files that know the normal.
+/// The same for local files, which are given the normal.
 Sweep sweep_local(const builder::Target& target, const builder::Source& source, const SweepOptions& options,
                   const build::Progress& progress = {});
 /// What a file with visibility cells is made for and measured on.
@@ -152,7 +152,7 @@ struct SweptMesh {
     bool turned = false; ///< from y up
     builder::Visibility visibility;
     std::vector<builder::SceneNormal> normals; ///< of both sides
-    std::string text;                          ///< that files tell
+    std::string text;                          ///< stored in the files as their scene
     std::string options;                       ///< in the words of the command line
 };
 /// Files with visibility cells beside those of normals alone, on a mesh with what it hides: at options.normals

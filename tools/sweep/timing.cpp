@@ -48,7 +48,7 @@ double thread_time() {
 
 volatile float sink; // what is computed must not be optimised away
 
-/// Works on a block of points, and tells how long a sample took.
+/// Works on a block of points, and returns the time of a sample, in ns.
 template <class Work>
 double timed_block(const Inputs& in, std::size_t begin, PointSampler& sampler, const Work& work) {
     const std::size_t count = std::min(kBlock, in.points.size());

@@ -28,7 +28,7 @@ struct Timed {
     bool has_pdf = true;
 };
 
-/// What is timed: at each point `kSamplesAPoint` samples, and as many densities of directions around the normal;
+/// What is timed: at each point `kSamplesAPoint` samples, and as many pdfs of directions around the normal;
 /// moving to the point is shared by them.
 constexpr std::uint32_t kSamplesAPoint = 16;
 

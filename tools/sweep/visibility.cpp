@@ -32,7 +32,7 @@ Candidate make_file(const builder::Target& target, const builder::Source& source
     return out;
 }
 
-/// What is the same at all points is said of each file and baseline: its variances there.
+/// Measures variances of each file and baseline at the same points.
 void measure_on(const measure::MeshStage& stage, std::vector<Candidate>& candidates, Sweep& sweep,
                 const build::Progress& progress) {
     std::vector<const measure::LightSampler*> samplers;

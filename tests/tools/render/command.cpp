@@ -44,7 +44,7 @@ TEST_F(RenderCommand, WritesWhatItSays) {
                                      "mis-full-cdf-cosine.exr", "mis-full-cdf-cosine.png",
                                      "mis-full-cdf-cosine-variance.png", "mis-full-cdf-cosine-above.png",
                                      "mis-full-cdf-cosine-gain.png"}));
-    for (const char* part : {"mis(full-cdf,cosine)", "of the sky is hidden", "nothing in the way", "Ranking"})
+    for (const char* part : {"mis(full-cdf,cosine)", "of the sky is hidden", "without occluders", "Ranking"})
         EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
     const LoadedImage image = load_image(folder / "out/reference.exr");
     EXPECT_EQ(image.width, 8);
@@ -173,9 +173,9 @@ TEST_F(RenderCommand, SaysWhatIsWrong) {
         write_text(folder / "scene.json", scene);
     };
     write("\"to\": [0, 0, 0.7]", "\"to\": [4, -1, 9]");
-    refused({}, 1, "scene.json: camera: looks nowhere");
+    refused({}, 1, "scene.json: camera: has no direction");
     write("\"to\": [0, 0, 0.7]", "\"to\": [9, -1, 9]");
-    refused({}, 1, "scene.json: camera: it sees no object");
+    refused({}, 1, "scene.json: camera: no object is in view");
     write("\"probe\": \"probe.pfm\"", "\"built_in\": \"moon\"");
     refused({}, 1, "scene.json: light.built_in: 'moon' is none of");
     write("lambert:albedo=0.5", std::string(300, 'x'));

@@ -80,7 +80,7 @@ TEST(SweepAdvice, GoesBySobolPointsWhereAsked) {
     const Advice advice = advise(sweep);
     EXPECT_EQ(advice.recommended.row, 0u);
     EXPECT_EQ(advice.sentence, "4 KiB reaches a relative variance of 0.004, 0.79 % noise at 64 samples per pixel "
-                               "of a scrambled Sobol' sequence; beyond it you gain nothing visible.");
+                               "from a scrambled Sobol' sequence; beyond it you gain nothing visible.");
     EXPECT_NE(advice.rule.find("Sobol'"), std::string::npos) << advice.rule;
     EXPECT_NE(sweep_html(sweep).find("With a scrambled Sobol&#39; sequence"), std::string::npos);
 }
@@ -164,7 +164,7 @@ TEST(SweepAdvice, SaysWhatPicturesHave) {
     const std::string all = advice.situations[open_alone].sentence + advice.situations[open_partner].sentence;
     for (const char* part :
          {"50 %, 25 %, 12 % noise at 16, 64, 256 independent samples (median point: 35 %, 18 %, 8.8 %)",
-          "12 % at 64 of a scrambled Sobol' sequence", "times less noise than the full_cdf",
+          "12 % at 64 samples of a scrambled Sobol' sequence", "times less noise than the full_cdf",
           "times more noise than the best baseline, the mis_compensation"})
         EXPECT_NE(all.find(part), std::string::npos) << part << "\n" << all;
     const std::string html = sweep_html(sweep);
@@ -194,8 +194,8 @@ TEST(SweepAdvice, TellsWhichBaselinesWin) {
               std::string::npos)
         << all;
     EXPECT_NE(all.find("Too close to call at equal time: even"), std::string::npos) << all;
-    EXPECT_NE(all.find("Hole is biased by itself"), std::string::npos) << all;
-    EXPECT_NE(all.find("Sample for sample no baseline is less noisy"), std::string::npos) << all;
+    EXPECT_NE(all.find("Hole is biased if used alone"), std::string::npos) << all;
+    EXPECT_NE(all.find("At equal samples no baseline is less noisy"), std::string::npos) << all;
 }
 
 /// Lines of a CSV of which no field holds a line break; fields unquoted.
