@@ -1,4 +1,4 @@
-// acdf export: samples and densities of an environment, a local environment or a BRDF for shaders: functions in
+// acdf export: samples and pdfs of an environment, a local environment or a BRDF for shaders: functions in
 // their languages, and tables.
 #include "shader/texts.h"
 #include "tools/cli/choice.h"

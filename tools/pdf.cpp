@@ -1,4 +1,4 @@
-// acdf pdf: densities of given directions.
+// acdf pdf: pdfs of given directions.
 #include "tools/cli/directions_csv.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"

@@ -1,4 +1,4 @@
-// Densities of BrdfBatch over vectors, and of many directions for one view: tables tell the cell, whatever the
+// Pdfs of BrdfBatch over vectors, and of many directions for one view: tables tell the cell, whatever the
 // view, and what each view gives to it. Internal linkage: see brdf_kernel.h.
 #pragma once
 
@@ -99,7 +99,7 @@ ACDF_LANE View same_view(const AcdfBrdfView& view) {
     return out;
 }
 
-/* Densities of a view, of up to `Lanes` directions. */
+/* Pdfs of a view, of up to `Lanes` directions. */
 template <int Lanes>
 ACDF_LANE void some_view_densities(const BatchTable& t, const AcdfBrdfView& view, const float (*wi)[3],
                                    std::size_t count, float* out) {

@@ -1,4 +1,4 @@
-// Densities of LocalBatch in files of the fast shape over vectors, as fast_kernel.h draws.
+// Pdfs of LocalBatch in files of the fast shape over vectors, as fast_kernel.h draws.
 #pragma once
 
 #include "batch/fast_cells.h"
@@ -142,7 +142,7 @@ ACDF_LANE void weigh_light(const AcdfLocal& local, std::size_t i, FastFinds* f) 
     f->cells.all[i] = f->bright_tiles.sum[i] * ACDF_FAST_STEPS;
 }
 
-/* The densities of lanes whose cells are known. */
+/* The pdfs of lanes whose cells are known. */
 ACDF_LANE void store_densities(const AcdfLocal& local, const FastCells& c, std::size_t count, float* out) {
     for (std::size_t first = 0; first < count; first += kLanes) {
         Vector pdf[2];
@@ -160,7 +160,7 @@ ACDF_LANE void store_densities(const AcdfLocal& local, const FastCells& c, std::
     }
 }
 
-/* Densities of up to kBlock lanes; `at` and `alone` as draw_block of local_kernel.h has them. */
+/* Pdfs of up to kBlock lanes; `at` and `alone` as draw_block of local_kernel.h has them. */
 template <class At, class Alone>
 ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Alone& alone,
                                   const float (*directions)[3], std::size_t count, float* out) {

@@ -164,7 +164,7 @@ ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* 
 
 // ---- cells -----------------------------------------------------------------------------------------------------
 
-/* acdf_fast_sample_cell of all lanes, but for what they share with densities. */
+/* acdf_fast_sample_cell of all lanes, but for what they share with pdfs. */
 ACDF_LANE void draw_cells(const AcdfLocal& local, std::size_t count, FastDraws* d) {
     FastCells& c = d->cells;
     alignas(64) double z[2][kRoom];
@@ -198,7 +198,7 @@ ACDF_LANE void draw_cells(const AcdfLocal& local, std::size_t count, FastDraws* 
 
 // ---- directions ------------------------------------------------------------------------------------------------
 
-/* Half of some directions up to where floats go on; densities as acdf_local_fast_cell_pdf has them. */
+/* Half of some directions up to where floats go on; pdfs as acdf_local_fast_cell_pdf has them. */
 ACDF_LANE Vector begin_directions(const AcdfLocal& local, const FastDraws& d, std::size_t at, int half,
                                   Drawn* out) {
     const FastCells& c = d.cells;

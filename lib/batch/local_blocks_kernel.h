@@ -67,7 +67,7 @@ ACDF_LANE void draws_in_blocks(const AcdfLocal& local, const AcdfLocalPoint& poi
                       block);
 }
 
-/* The same of densities. */
+/* The same of pdfs. */
 template <std::size_t Size, class P, class Block>
 ACDF_LANE void densities_in_blocks(const AcdfLocal& local, const float (*normals)[3], const float (*directions)[3],
                                    std::size_t count, float* out, const Block& block) {

@@ -1,4 +1,4 @@
-// Densities of LocalBatch over vectors, operation by operation as in acdf/local.h; see local_kernel.h.
+// Pdfs of LocalBatch over vectors, operation by operation as in acdf/local.h; see local_kernel.h.
 #pragma once
 
 #include "batch/local.h"
@@ -171,7 +171,7 @@ ACDF_LANE Floats cell_densities(const AcdfLocal& local, const Cells& cells, cons
     return to_floats((Doubles)out[0], (Doubles)out[1]);
 }
 
-/* Densities of all cells. Returns the lanes that are left to single calls. */
+/* Pdfs of all cells. Returns the lanes that are left to single calls. */
 ACDF_LANE std::uint64_t told_densities(const AcdfLocal& local, const Cells& cells, const Boxes& done, float* out) {
     std::uint64_t lost = 0;
     for (std::size_t first = 0; first < cells.count; first += kLanes) {
@@ -187,7 +187,7 @@ ACDF_LANE std::uint64_t told_densities(const AcdfLocal& local, const Cells& cell
 
 constexpr std::size_t kAhead = 8; // lanes, whose rows are asked for
 
-/* Densities of up to kBlock lanes; `at` and `alone` as in draw_block. */
+/* Pdfs of up to kBlock lanes; `at` and `alone` as in draw_block. */
 template <class At, class Alone>
 ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& alone, const float (*directions)[3],
                              std::size_t count, float* out) {

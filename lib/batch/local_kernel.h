@@ -186,7 +186,7 @@ ACDF_LANE void end_walks(const AcdfLocal& local, const Walks& w, const Scaled& s
 
 // ---- directions ------------------------------------------------------------------------------------------------
 
-/* acdf_row_place of half of some lanes, in doubles. Returns the densities. */
+/* acdf_row_place of half of some lanes, in doubles. Returns the pdfs. */
 ACDF_LANE Vector row_place(const AcdfLocal& local, const Cells& cells, const Boxes& done, std::size_t at, int half,
                            Drawn* out) {
     const double columns = local.environment.columns;

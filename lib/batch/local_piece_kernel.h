@@ -1,4 +1,4 @@
-// Densities of LocalBatch over vectors, of files that have pieces of cells: acdf_local_table_pdf of
+// Pdfs of LocalBatch over vectors, of files that have pieces of cells: acdf_local_table_pdf of
 // acdf/local.h, operation by operation; see local_kernel.h. Only the first piece that may hold a direction is
 // looked at.
 #pragma once
@@ -62,7 +62,7 @@ ACDF_LANE Integer parts_of(const AcdfLocal& local, Integer row) {
     return multiplied(row, 8ll * local.blend.tiles->tile_count) + parts;
 }
 
-/* Densities of up to kSearched lanes; `at` and `alone` as in draw_block. */
+/* Pdfs of up to kSearched lanes; `at` and `alone` as in draw_block. */
 template <class At, class Alone>
 ACDF_LANE void piece_block(const AcdfLocal& local, const Search& s, const At& at, const Alone& alone,
                            const float (*directions)[3], std::size_t count, float* out) {
@@ -111,7 +111,7 @@ ACDF_LANE void piece_block(const AcdfLocal& local, const Search& s, const At& at
 
 // ---- all of an array -------------------------------------------------------------------------------------------
 
-/* Densities by pieces where a file has them; `of`: normals, one each, or the point of all. */
+/* Pdfs by pieces where a file has them; `of`: normals, one each, or the point of all. */
 template <class Of>
 ACDF_LANE void pdf_all(const AcdfLocal& local, Of of, const float (*directions)[3], std::size_t count, float* out) {
     if (local.tables->pieces) {

@@ -31,7 +31,7 @@ template <bool Draws>
 struct Points : Corners {
     static constexpr bool kEach = Draws; // whether they have the weight of each light
     Integer codes[kRows];                // addresses of those of the rows
-    Integer others; // of densities, in the lower halves: AcdfFacet::others, which sums leave out
+    Integer others; // of pdfs, in the lower halves: AcdfFacet::others, which sums leave out
     Vector bright_tiles, mixture, sum, light[Draws ? ACDF_MAX_BRIGHT_TILES : 1];
 };
 
@@ -122,7 +122,7 @@ ACDF_LANE void weigh_each(const AcdfLocal& local, Points<true>* out) {
     }
 }
 
-/* All bright tiles, and of densities those that all normals of a triangle see. */
+/* All bright tiles, and of pdfs those that all normals of a triangle see. */
 ACDF_LANE void weigh_lights(const AcdfLocal& local, Points<true>* out) {
     weigh_each(local, out);
     const Facets of = facets_of(local, *out);

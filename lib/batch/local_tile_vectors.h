@@ -1,4 +1,4 @@
-// What samples and pdfs of LocalBatch share: lanes in tiles and in cells, and densities of cells. Internal
+// What samples and pdfs of LocalBatch share: lanes in tiles and in cells, and pdfs of cells. Internal
 // linkage: see local_kernel.h.
 #pragma once
 

@@ -19,7 +19,7 @@ struct Array {
     double scale = 1.0;
 };
 
-/// Numbers that are no density: `first` is the index of the first one in row-major order.
+/// Numbers that are no pdf: `first` is the index of the first one in row-major order.
 using BadValues = builder::BadNumbers;
 
 /// What numbers are, before they become floats.
@@ -36,7 +36,7 @@ struct Survey {
 /// A number as a float: bad ones and 0 as 0, others times `factor` and never 0.
 float scaled(double value, double factor);
 
-/// "it has numbers that are no density: 2 NaN, 1 negative, the first at [3, 0, 12]".
+/// "it has numbers that are no pdf: 2 NaN, 1 negative, the first at [3, 0, 12]".
 std::string text(const BadValues& bad, const std::vector<std::uint32_t>& shape);
 
 /// "3, 0, 12": where the `flat`-th number in row-major order stands.

@@ -34,7 +34,7 @@ std::string option_text(const BrdfFileOptions& options);
 
 struct BrdfFile {
     std::vector<std::uint8_t> bytes; ///< the whole file
-    BrdfAccuracy accuracy;           ///< of the stored densities, over random views
+    BrdfAccuracy accuracy;           ///< of the stored pdfs, over random views
     std::uint32_t theta_views = 0, phi_views = 0;
 };
 

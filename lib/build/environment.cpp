@@ -34,7 +34,7 @@ compress::Metadata metadata(const Source& source, const EnvironmentOptions& opti
                            {"source.sha256", source.sha256},
                            {"source.projection", source.projection},
                            {"accuracy.relative_variance", accuracy_text(accuracy.relative_variance)}};
-    if (!options.mis) { // the density of a file for an MIS partner is not to be near the light's
+    if (!options.mis) { // the pdf of a file for an MIS partner is not to be near the light's
         out.push_back({"accuracy.rms_pdf_error", accuracy_text(accuracy.rms_pdf_error)});
         out.push_back({"accuracy.kl_divergence", accuracy_text(accuracy.kl_divergence)});
     }

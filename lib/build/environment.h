@@ -33,7 +33,7 @@ struct EnvironmentOptions {
 
 struct Environment {
     std::vector<std::uint8_t> bytes;      ///< the whole file
-    Accuracy accuracy;                    ///< of the stored density, after quantization
+    Accuracy accuracy;                    ///< of the stored pdf, after quantization
     std::optional<compress::Order> order; ///< which axis was split first, where that was tried or asked for
 };
 

@@ -77,7 +77,7 @@ Local build_local(const compress::Target& target, const Source& source, const Lo
 Local build_local_in_any_shape(const compress::Target& target, const Source& source, const LocalOptions& options,
                                const Progress& progress = {});
 
-/// A sample and a density take 200 and 130 ns of the small shape and 130 and 64 of the fast one
+/// A sample and a pdf take 200 and 130 ns of the small shape and 130 and 64 of the fast one
 /// (docs/performance.md, 1 MiB), and a shadow ray and a BRDF beside them 500 (acdf sweep): 830 to 694 ns. So as
 /// much variance, and more, is even after the same time.
 constexpr double kFastIsWorth = 1.15;

@@ -31,7 +31,7 @@ struct TableOptions {
 
 struct Table {
     std::vector<std::uint8_t> bytes; ///< the whole file
-    TableAccuracy accuracy;          ///< of the stored densities, after quantization
+    TableAccuracy accuracy;          ///< of the stored pdfs, after quantization
     double total = 0.0;
 };
 

@@ -21,7 +21,7 @@ std::size_t count_of(const Grid& grid) {
     return count;
 }
 
-/// Numbers over their mean: a density with the whole bin as unit of volume. Empty without energy.
+/// Numbers over their mean: a pdf with the whole bin as unit of volume. Empty without energy.
 std::vector<double> pdf_of(const Grid& grid) {
     std::vector<double> out(grid.values, grid.values + count_of(grid));
     compress::Sum sum;
@@ -32,7 +32,7 @@ std::vector<double> pdf_of(const Grid& grid) {
     return out;
 }
 
-/// nu n_b at which the shares of all boxes come to nu n_l; f and b are densities, b may be empty.
+/// nu n_b at which the shares of all boxes come to nu n_l; f and b are pdfs, b may be empty.
 double solve_threshold(const std::vector<double>& f, const std::vector<double>& b, const compress::Filling& filling,
                        double ratio) {
     if (b.empty()) return 0.0;
@@ -60,7 +60,7 @@ void fill(const Grid& grid, const TableCell& cell, std::size_t axis, std::size_t
     }
 }
 
-/// A bin: f, the file's density p and its partner's b in each box of the grid, with the bin as unit of volume.
+/// A bin: f, the file's pdf p and its partner's b in each box of the grid, with the bin as unit of volume.
 struct Densities {
     std::vector<double> f, p, b;
     std::uint64_t cells = 0;

@@ -31,7 +31,7 @@ private:
 
 /// Compares a file that has the MIS partner of a table with `bins`, as measure_bins does: variance, weights and
 /// violations are those of both together, N times the variance of N samples of which the file has its share. Errors
-/// of the density are 0. Throws std::invalid_argument as measure_bins does.
+/// of the pdf are 0. Throws std::invalid_argument as measure_bins does.
 std::vector<BinAccuracy> measure_bins_beside(const File& file, const std::vector<compress::Grid>& bins,
                                              const std::vector<compress::Grid>& others);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kCosines = 64;
 
-/// Density of light that a GGX lobe samples for a view: visible normals (Heitz, JCGT 2018), reflected.
+/// The pdf of light that a GGX lobe samples for a view: visible normals (Heitz, JCGT 2018), reflected.
 double ggx_pdf(double alpha, const std::array<double, 3>& wo, const std::array<double, 3>& wi) {
     std::array<double, 3> h{};
     double length = 0.0;
@@ -27,7 +27,7 @@ double ggx_pdf(double alpha, const std::array<double, 3>& wo, const std::array<d
     return distribution * shadowing / (4.0 * wo[2]);
 }
 
-/// The mean density of lobes for light of one cosine: half of them that of a matte surface, the others glossy ones,
+/// The mean pdf of lobes for light of one cosine: half of them that of a matte surface, the others glossy ones,
 /// seen from all sides.
 double brdf_density(double cosine) {
     constexpr double widths[] = {0.5, 0.25, 0.1};

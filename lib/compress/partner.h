@@ -1,6 +1,6 @@
-// Fits for an MIS partner: densities that are used together with another sampler, by multiple importance sampling.
+// Fits for an MIS partner: pdfs that are used together with another sampler, by multiple importance sampling.
 //
-// With n_l samples of the density p and n_b of the partner's b, the balance heuristic has the second moment
+// With n_l samples of the pdf p and n_b of the partner's b, the balance heuristic has the second moment
 // sum of f^2 / (n_l p + n_b b): least where n_l p + n_b b = f / nu wherever that is more than the partner gives
 // alone, and p = 0 elsewhere (water filling, docs/method.md). For a multiplier nu the cost of a cell of constant p
 // does not depend on other cells, so that costs stay additive: with A = sqrt(measure . integral of f^2) and
@@ -54,7 +54,7 @@ struct HullPoint {
 /// there are.
 std::size_t falling_hull(const double* y, const double* cost, std::size_t count, HullPoint* out);
 
-/// How many samples a cell takes for a multiplier nu, where the partner's density is known.
+/// How many samples a cell takes for a multiplier nu, where the partner's pdf is known.
 class Filling {
 public:
     /// Combined by the balance heuristic: A - A^2 / D.
@@ -64,7 +64,7 @@ public:
 
     /// nu n_l times the integral of p over a cell, in the units of A.
     double share(double alone, double left) const;
-    /// The same for a density: of light x over the threshold at which the partner covers it, over that threshold.
+    /// The same for a pdf: of light x over the threshold at which the partner covers it, over that threshold.
     double above(double x) const;
 
 private:
@@ -74,12 +74,12 @@ private:
     std::vector<Knot> knots_; ///< empty: y = x - 1
 };
 
-/// The densities of an MIS partner around a surface's normal.
+/// The pdfs of an MIS partner around a surface's normal.
 class Lobes {
 public:
     explicit Lobes(AcdfPartnerKind kind);
 
-    /// The density of directions with that cosine to the normal, sr^-1; 0 below it.
+    /// The pdf of directions with that cosine to the normal, sr^-1; 0 below it.
     double density(double cosine) const;
     /// What light counts there: pi times that, so the cosine itself for ACDF_PARTNER_COSINE.
     double brightness(double cosine) const { return 3.141592653589793 * density(cosine); }

@@ -19,7 +19,7 @@ class Filling;
 /// exact solid angle.
 ///
 /// g is the root mean square, over a texel and summed over channels, of the integrand f that a renderer
-/// estimates: with one channel and nearest lookup it is f itself. A density p that is constant on texels then has
+/// estimates: with one channel and nearest lookup it is f itself. A pdf p that is constant on texels then has
 /// E[(f/p)^2] = sum over texels of g^2/p, so that fitting g minimises the noise of f whatever f is.
 struct Target {
     std::uint32_t columns = 0;
@@ -109,7 +109,7 @@ bool has_energy(const Target& target);
 /// The integral of g, by compensated summation.
 double integral(const Target& target);
 
-/// E[(f/p)^2] of the best density that is constant on texels, over `mean_square`: at least 1, and 1 where g is f.
+/// E[(f/p)^2] of the best pdf that is constant on texels, over `mean_square`: at least 1, and 1 where g is f.
 double least_second_moment(const Target& target);
 
 /// The map as samplers of texels see it, which sample them by g: without the peaks. `target`, or one that is made

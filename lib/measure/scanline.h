@@ -13,7 +13,7 @@
 
 namespace acdf::measure {
 
-/// A row as a density p* over [0, 1], constant on each texel.
+/// A row as a pdf p* over [0, 1], constant on each texel.
 class Scanline {
 public:
     /// Throws std::invalid_argument where there is no such row, or no light in it.
@@ -21,7 +21,7 @@ public:
 
     std::uint32_t texels() const { return static_cast<std::uint32_t>(row_.mass.size()); }
     /// The curve that a fit makes of the row with at most so many segments: uniform, cdf and variance with
-    /// densities constant on each segment, pdf linear.
+    /// pdfs constant on each segment, pdf linear.
     compress::Curve fit(AcdfFit fit, std::uint32_t segments) const;
     /// sqrt of the integral of (p - p*)^2 over [0, 1].
     double rms_error(const compress::Curve& curve) const;

@@ -21,7 +21,7 @@ public:
     static std::unique_ptr<OpenFile> from_bytes(const py::bytes& bytes, bool tables);
 
     const AcdfFile* file() const { return file_.get(); }
-    /// Directions (or points) and their densities. `condition`: normals, views, indices; None for environments.
+    /// Directions (or points) and their pdfs. `condition`: normals, views, indices; None for environments.
     /// `out`: where they are written, or None for new arrays.
     py::tuple sample(const py::object& condition, const py::object& u, const py::tuple& out) const;
     py::array pdf(const py::object& condition, const py::object& x, const py::object& out) const;

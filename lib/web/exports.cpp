@@ -24,7 +24,7 @@ struct Opened {
     void* bytes;
 };
 
-/// What `at` points to says which of a file's densities is meant: a normal, or a view; nothing for environments.
+/// What `at` points to says which of a file's pdfs is meant: a normal, or a view; nothing for environments.
 acdf::DirectionSample sample(const acdf::File& file, const float* at, double u0, double u1) {
     switch (file.kind()) {
     case ACDF_KIND_ENVIRONMENT:
@@ -152,13 +152,13 @@ ACDF_EXPORT void acdf_web_sample(const Opened* opened, const float* at, const do
         std::memcpy(out + 4 * i, &s, sizeof s);
     }
 }
-/// Densities of `count` directions, x y z each.
+/// Pdfs of `count` directions, x y z each.
 ACDF_EXPORT void acdf_web_pdf(const Opened* opened, const float* at, const float* directions, std::size_t count,
                               float* out) {
     for (std::size_t i = 0; i < count; ++i) out[i] = density(opened->file, at, directions + 3 * i);
 }
 
-/// Densities of the middles of width x height texels of a lat-long map as docs/conventions.md has it: phi = pi at
+/// Pdfs of the middles of width x height texels of a lat-long map as docs/conventions.md has it: phi = pi at
 /// the left, theta = 0 at the top.
 ACDF_EXPORT void acdf_web_map(const Opened* opened, const float* at, u32 width, u32 height, float* out) {
     for (u32 y = 0; y < height; ++y)

@@ -41,7 +41,7 @@ const char* const kRglFile = "cc_ibiza_sunset_rgb.bsdf";
 std::string path_of(const std::string& name) { return std::string(ACDF_TEST_DATA) + "/brdfs/" + name; }
 
 /// cos(theta_o) uniform in [0.1, 1]; wi reflected by the RGL sampler or, without its data, a GGX lobe: where light
-/// comes from is where densities are asked for.
+/// comes from is where pdfs are asked for.
 struct Query {
     double u[2];
     float wo[3], wi[3];

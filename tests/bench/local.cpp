@@ -1,4 +1,4 @@
-// Time of a shading point, samples and densities of local environment files, with runtime tables and without, and
+// Time of a shading point, samples and pdfs of local environment files, with runtime tables and without, and
 // many at once, beside the full table of an environment of as many columns, which knows nothing of normals.
 //
 //   bench_local FILE.acdf...      tables in Markdown
@@ -78,7 +78,7 @@ Candidate sample_each(const LocalEnvironmentView& view, const Questions& q) {
             }};
 }
 
-/// Densities at a normal that serves once.
+/// Pdfs at a normal that serves once.
 Candidate pdf_each(const LocalEnvironmentView& view, const Questions& q, const Directions& directions) {
     return {"", [&](std::size_t first, std::size_t count) {
                 for (std::size_t i = first; i < first + count; ++i)
@@ -221,7 +221,7 @@ bool run(const char* path) {
     return true;
 }
 
-/// N calls many at once; 'r': samples, else densities.
+/// N calls many at once; 'r': samples, else pdfs.
 void count_batches(const LocalBatch& batch, const Questions& q, char what, std::size_t calls) {
     std::vector<DirectionSample> samples(kBatch);
     std::vector<float> densities(kBatch);

@@ -1,4 +1,4 @@
-// Time of what acdf/product/product.h does, beside that of one sample of each strategy with the density of the
+// Time of what acdf/product/product.h does, beside that of one sample of each strategy with the pdf of the
 // other, which is what multiple importance sampling pays a sample: bench_product LOCAL.acdf BRDF.acdf
 //
 // Processor time of the thread, the least of some turns in which all take part. Each call has another normal,

@@ -2,9 +2,9 @@
 // product_checks LOCAL.acdf (BRDF.acdf | ALPHA_X ALPHA_Y)
 //
 // Normals and views are random, one view in four grazing, one normal in four where bins of normals meet. Light is
-// what the file's environment says, the BRDF its own sampler's density over the cosine. Columns: pairs; how far the
-// density of the cut is from integrating to 1, by summation over the squares of the grid, for a few pairs; samples
-// whose density pdf() tells otherwise; samples and random directions with light and BRDF but without density; pairs
+// what the file's environment says, the BRDF its own sampler's pdf over the cosine. Columns: pairs; how far the
+// pdf of the cut is from integrating to 1, by summation over the squares of the grid, for a few pairs; samples
+// whose pdf pdf() tells otherwise; samples and random directions with light and BRDF but without pdf; pairs
 // whose mean is farther than 4 standard errors, and 0.3 % for lobes that change within a square, from summation
 // over the squares of the light's grid.
 #include "measure/samplers/ggx_lobe.h"
@@ -63,7 +63,7 @@ struct Counts {
     int disagree = 0, violations = 0, beyond = 0;
 };
 
-/// Of the density by which parts are sampled, whatever their shape.
+/// Of the pdf by which parts are sampled, whatever their shape.
 template <class Point>
 double cut_integral(const AcdfLocal& light, const Point& point) {
     const AcdfGrid grid = acdf_environment_grid(&light.environment);
@@ -118,7 +118,7 @@ struct Squares {
     }
 };
 
-/// Light times the lobe's density, by summation: finer where the lobe is narrow, at the horizon, and where much of
+/// Light times the lobe's pdf, by summation: finer where the lobe is narrow, at the horizon, and where much of
 /// the light is.
 template <class AnyLobe>
 double summed(const Squares& squares, const AnyLobe& lobe, const typename AnyLobe::Point& point,

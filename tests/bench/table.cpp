@@ -1,4 +1,4 @@
-// Time of samples and densities of table files, beside the full conditional CDFs and an alias table of the same
+// Time of samples and pdfs of table files, beside the full conditional CDFs and an alias table of the same
 // numbers in floats. Writes tables in Markdown.
 #include "tests/bench/turns.h"
 
@@ -44,7 +44,7 @@ std::vector<float> numbers(const std::vector<std::uint32_t>& sides) {
 }
 
 /// Cumulative sums along the last axis, of their totals along the one before, and so on, all in floats: one search
-/// an axis samples, one load tells a density. Points are in units of cells.
+/// an axis samples, one load tells a pdf. Points are in units of cells.
 class FullTable {
 public:
     FullTable(const std::vector<float>& values, std::vector<std::uint32_t> sides)

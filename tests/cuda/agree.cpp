@@ -1,11 +1,11 @@
-// Whether a GPU samples what the processor samples, and tells the same densities.
+// Whether a GPU samples what the processor samples, and tells the same pdfs.
 //
 //   cuda_agree [--exact] COUNT FILE...            environments, local environments, BRDFs and tables
 //   cuda_agree [--exact] COUNT --product PARTS LOCAL BRDF
 //
 // A row of a table in Markdown for each file, by its runtime tables and walked: out of COUNT samples and as many
 // directions, those that are not the processor's to the bit, by how much they differ at most, and samples whose
-// density is another one when it is asked for. --exact: fails unless all are the same. Skips (77) where there is no
+// pdf is another one when it is asked for. --exact: fails unless all are the same. Skips (77) where there is no
 // device.
 #include "device_answers.h"
 
@@ -25,7 +25,7 @@ constexpr std::size_t kBatch = std::size_t{1} << 20;
 /// Differences between a GPU's answers and the processor's.
 struct Differences {
     std::size_t draws = 0, densities = 0, others = 0; ///< not the same to the bit
-    std::size_t own = 0;                              ///< samples whose direction has another density
+    std::size_t own = 0;                              ///< samples whose direction has another pdf
     std::size_t far = 0;                              ///< samples that lie more than 1e-5 away
     double most_own = 0.0, most_other = 0.0;          ///< relative
 

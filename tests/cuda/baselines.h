@@ -65,7 +65,7 @@ struct FullTable {
 };
 
 /// The alias method. Sixteen bytes a texel, so that a sample is one load: what the texel keeps, its alias, and
-/// the densities of both.
+/// the pdfs of both.
 struct AliasTable {
     TexelGrid grid;
     const float4* entries;

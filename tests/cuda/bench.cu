@@ -1,4 +1,4 @@
-// Time of samples and densities on a GPU, beside samplers of all texels of a map.
+// Time of samples and pdfs on a GPU, beside samplers of all texels of a map.
 //
 //   cuda_bench environments COLUMNS FILE...   environments and their exported tables (.bin); maps of so
 //                                             many columns are what they are compared with
@@ -89,7 +89,7 @@ struct Nothing {
     __device__ float pdf(const float w[3]) const { return w[0] + w[1] + w[2]; }
 };
 
-/// Directions that a sampler samples, for calls that ask for densities there.
+/// Directions that a sampler samples, for calls that ask for pdfs there.
 template <class View>
 __global__ void draw_all(View view, const float2* u, float4* out) {
     const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;

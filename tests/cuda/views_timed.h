@@ -10,7 +10,7 @@ namespace acdf_cuda {
 Timed time_sample(const acdf::EnvironmentView& view, const Asked& asked);
 Timed time_pdf(const acdf::EnvironmentView& view, const Asked& asked);
 
-/// A shading point, and a draw, 16 draws or a density there.
+/// A shading point, and a draw, 16 draws or a pdf there.
 Timed time_sample(const acdf::LocalEnvironmentView& view, const Asked& asked);
 Timed time_samples(const acdf::LocalEnvironmentView& view, const Asked& asked);
 Timed time_pdf(const acdf::LocalEnvironmentView& view, const Asked& asked);

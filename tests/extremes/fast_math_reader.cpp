@@ -30,7 +30,7 @@ Vector random_direction(std::mt19937_64& random) {
     return {static_cast<float>(s * std::cos(phi)), static_cast<float>(s * std::sin(phi)), static_cast<float>(z)};
 }
 
-/// Sampling and density of a file on the sphere, as the reader has it and compiled with -ffast-math. `about` is a
+/// Sampling and pdf of a file on the sphere, as the reader has it and compiled with -ffast-math. `about` is a
 /// normal or a view, of no meaning to an environment.
 struct Sampler {
     std::function<AcdfDirectionSample(const Vector&about, double u0, double u1)> exact, fast;

@@ -126,7 +126,7 @@ TEST(ExtremeLocal, DarkHemispheresDrawNothing) {
     }
 }
 
-/// What a mixture adds up of a direction: its density times the light that the normal gets.
+/// What a mixture adds up of a direction: its pdf times the light that the normal gets.
 double lit(const acdf::LocalEnvironmentView& view, const Normal& normal, const Normal& direction) {
     return static_cast<double>(view.pdf(normal.data(), direction.data())) * view.irradiance(normal.data());
 }
@@ -141,7 +141,7 @@ double largest_lit(const acdf::LocalEnvironmentView& view, const Normal& normal,
     return most;
 }
 
-// On the seams of the octahedron, where a normal's corners change: on both sides the density is nearly the same,
+// On the seams of the octahedron, where a normal's corners change: on both sides the pdf is nearly the same,
 // but for what a corner gives whose weight begins there; and it covers and sums to one.
 TEST(ExtremeLocal, SeamsOfTheOctahedronAreContinuous) {
     const LocalMap map = map_of(suns_target(kColumns, kRows), 5, true);

@@ -1,5 +1,5 @@
 // Random numbers are floats in most renderers: 2^24 steps an axis. Which cells can they reach, and how far from
-// its density is what they sample? Every number of the grid counts: nothing is sampled.
+// its pdf is what they sample? Every number of the grid counts: nothing is sampled.
 #include "tests/extremes/find_cell.h"
 #include "tests/extremes/targets.h"
 #include "tests/inputs/environment_file.h"

@@ -1,4 +1,4 @@
-// Many samples and densities at once, by whatever instructions this processor has, of any file that was accepted:
+// Many samples and pdfs at once, by whatever instructions this processor has, of any file that was accepted:
 // those of single calls, to the bit.
 #pragma once
 

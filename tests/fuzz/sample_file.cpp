@@ -123,7 +123,7 @@ void sample_everything(const acdf::TableView& view, FuzzRandom& random) {
     }
 }
 
-/// The same bytes through the C interface: the same densities.
+/// The same bytes through the C interface: the same pdfs.
 void sample_in_c(const void* bytes, std::size_t size, const acdf::File& file, FuzzRandom& random) {
     AcdfError error;
     AcdfFile* c = acdf_from_memory(bytes, size, &error);

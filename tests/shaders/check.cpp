@@ -12,11 +12,11 @@ namespace acdf_test {
 
 namespace {
 
-// Of a density: what floats round. Beyond the second, it is another cell's.
+// Of a pdf: what floats round. Beyond the second, it is another cell's.
 constexpr double kNear = 1e-5, kSame = 1e-3;
 // In the fast shape rows have weights that are whole numbers, 2^12 in all or more: one may be one more or less.
 constexpr double kNearOnGrids = 3.0 / 4096.0;
-// Samples of another cell than the reader's, and directions of another density: next to borders.
+// Samples of another cell than the reader's, and directions of another pdf: next to borders.
 constexpr double kMostOthers = 1e-4;
 
 struct Differences {
@@ -44,7 +44,7 @@ public:
         return file_.kind() == ACDF_KIND_LOCAL ? file_.local().pdf(point_, d) : file_.environment().pdf(d);
     }
 
-    /// Of a density: what floats round.
+    /// Of a pdf: what floats round.
     double near(const float d[3]) const {
         if (file_.fast().grid) return kNearOnGrids;
         return brdf() ? Halves(wo_, d).rounded() : kNear;

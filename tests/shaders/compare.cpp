@@ -1,10 +1,10 @@
 // What a device answers by exported functions and tables, beside the reader.
 //
 //   compare_shader inputs FILE.acdf COUNT FOLDER     writes words.bin, directions.bin and normals.bin
-//   compare_shader check FILE.acdf COUNT FOLDER ULPS reads samples.bin and densities.bin, and fails where they
+//   compare_shader check FILE.acdf COUNT FOLDER ULPS reads samples.bin and pdfs.bin, and fails where they
 //   differ
 //
-// words.bin: two u32 a sample. directions.bin, normals.bin: x y z 0, floats. samples.bin: x y z pdf. densities.bin:
+// words.bin: two u32 a sample. directions.bin, normals.bin: x y z 0, floats. samples.bin: x y z pdf. pdfs.bin:
 // the pdf of the direction, and that of the sample's. Random numbers are fixed.
 #include "tests/shaders/answers.h"
 #include "tests/shaders/check.h"

@@ -97,7 +97,7 @@ TEST(BrdfCommand, measureComparesWithOtherSamplers) {
     EXPECT_NEAR(j.at("noise_percent").at("64").get<double>(), noise, 1e-3 * noise);
 }
 
-// The hemisphere seen from the normal: every pixel of the disc is the reader's density of the direction above it.
+// The hemisphere seen from the normal: every pixel of the disc is the reader's pdf of the direction above it.
 TEST(BrdfCommand, plotsAHemisphere) {
     const Folder folder;
     constexpr int width = 48;

@@ -71,7 +71,7 @@ TEST_F(Filters, AreBilinearWhereNothingElseIsAskedFor) {
     EXPECT_EQ(read_text(folder / "out/probe.acdf"), read_text(folder / "a.acdf"));
 }
 
-// Its density covers what the nearest texel has, too: exactly, and in what its samples sum to.
+// Its pdf covers what the nearest texel has, too: exactly, and in what its samples sum to.
 TEST_F(Filters, ABilinearFileServesNearestLookups) {
     for (const std::vector<std::string>& words :
          {std::vector<std::string>{"env", probe, "--budget", "4KiB"}, {"local", probe, "--budget", "24KiB"}}) {

@@ -276,7 +276,7 @@ TEST_F(Hostile, FilesForAllNormalsAdviseASceneOrTheMean) {
     EXPECT_FALSE(advised({}));
 }
 
-// A file is measured against any source, which is told; where it has no density for the light, that is an error.
+// A file is measured against any source, which is told; where it has no pdf for the light, that is an error.
 TEST_F(Hostile, ASourceThatAFileDoesNotStandForIsRefused) {
     const auto write = [&](const std::string& path, int bright, int height = 8) { // the only one
         std::ofstream out(path, std::ios::binary);
@@ -312,7 +312,7 @@ TEST_F(Hostile, ASourceThatAFileDoesNotStandForIsRefused) {
     EXPECT_NE(otherwise.err.find("as it is read here"), std::string::npos) << otherwise.err;
     ASSERT_EQ(run_acdf({"env", even, "-o", file, "-q", "-f"}).code, 0);
     const Result covered = run_acdf({"measure", file, "--against", there});
-    EXPECT_EQ(covered.code, 0); // it has a density there: noise, no bias
+    EXPECT_EQ(covered.code, 0); // it has a pdf there: noise, no bias
     EXPECT_NE(covered.err.find("made from another file"), std::string::npos) << covered.err;
 }
 

@@ -248,7 +248,7 @@ TEST(PlotLocal, HorizonIsWhereTheCosineVanishes) {
     }
 }
 
-// Lines of cells run where the density changes.
+// Lines of cells run where the pdf changes.
 TEST(PlotLocal, KnotsAreTheBordersOfCells) {
     File file;
     ASSERT_TRUE(File::open(shared.c_str(), file).ok());

@@ -158,7 +158,7 @@ TEST_F(OctahedralCommand, SweepsDrawItsTexels) {
             made(square, {"--projection", "octahedral", "--filter", "nearest", "--budget", "30kB"}, kind);
         EXPECT_EQ(sweep["rows"][0]["file_bytes"], file["bytes"]);
         if (kind == std::string("env")) {
-            EXPECT_LT(full["relative_variance"], 1e-9); // the density is the light itself
+            EXPECT_LT(full["relative_variance"], 1e-9); // the pdf is the light itself
             continue;
         }
         const json told = measured(square, {"--projection", "octahedral", "--baselines"});
@@ -220,7 +220,7 @@ TEST_F(OctahedralCommand, PresetsSetDomainFilterAndChannel) {
         EXPECT_NE(unknown.err.find(part), std::string::npos) << unknown.err;
 }
 
-// Within half a texel of the zenith these find the last row: it needs density there, and files say so to `measure`.
+// Within half a texel of the zenith these find the last row: it needs pdf there, and files say so to `measure`.
 TEST_F(OctahedralCommand, PresetsCoverWhatRowsThatRepeatShowAtThePoles) {
     const int width = 20, height = 10;
     std::vector<float> rgb(3 * width * height, 0.0f);

@@ -49,7 +49,7 @@ std::string source_thumbnail(const JobResult& job, const BatchJob& planned, cons
     }
 }
 
-/// A density as a small picture; empty where the file cannot be read.
+/// A pdf as a small picture; empty where the file cannot be read.
 std::string thumbnail(const std::string& path, const std::string& name) {
     File file;
     if (!File::open(path.c_str(), file).ok()) return "";

@@ -12,7 +12,7 @@ namespace acdf::tools {
 /// How every page made here begins.
 extern const char gallery_mark[];
 
-/// A page that is one file: for each job its source and its density in false colours, each in a range of its own,
+/// A page that is one file: for each job its source and its pdf in false colours, each in a range of its own,
 /// size and noise; what failed comes last, with its error. `folder` is where outputs lie, `plan` has the job of
 /// each result. An environment is shown as a lat-long map, a local one for the normal +z, a BRDF on the hemisphere
 /// for a view at 45 degrees. Sources are read once more.

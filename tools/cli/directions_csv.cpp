@@ -34,7 +34,7 @@ std::vector<std::string> fields_of(const std::string& line) {
     return fields;
 }
 
-// Numbers as C writes them, "nan" and "inf" included: their density is 0.
+// Numbers as C writes them, "nan" and "inf" included: their pdf is 0.
 std::optional<double> number_in(const std::string& field) {
     const char* begin = field.data() + (field.size() > 1 && field[0] == '+' && field[1] != '-' ? 1 : 0);
     const char* end = field.data() + field.size();

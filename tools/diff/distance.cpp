@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint32_t kNormals = 64, kViews = 32, kBins = 64;
 constexpr std::uint32_t kSamplesAlone = 65536, kSamplesEach = 2048; // for one condition, and for each of several
 
-/// Collects what samples of both files see of both densities, at one condition.
+/// Collects what samples of both files see of both pdfs, at one condition.
 class Meeting {
 public:
     explicit Meeting(Distance& distance) : distance_(distance) {}
@@ -48,7 +48,7 @@ private:
 };
 
 /// Samples `samples` from each of two, (p + q) / 2 in all, and compares. `sample(which, u, x)` is false where
-/// nothing is sampled, `pdf(which, x)` a density; x are `Point`s.
+/// nothing is sampled, `pdf(which, x)` a pdf; x are `Point`s.
 template <class Point, class Sample, class Pdf>
 void meet(Distance& distance, std::uint32_t samples, std::uint32_t dimensions, const Sample& sample,
           const Pdf& pdf) {

@@ -1,4 +1,4 @@
-// The density of a BRDF file for one view, over the sphere of directions of light.
+// The pdf of a BRDF file for one view, over the sphere of directions of light.
 #pragma once
 
 #include "tools/plot/density.h"
@@ -29,7 +29,7 @@ struct PlottedView {
     void direction(float wo[3]) const;
 };
 
-/// The stored density, exactly: below the surface too, where a few samples fall. The view's File must
+/// The stored pdf, exactly: below the surface too, where a few samples fall. The view's File must
 /// outlive the result.
 Density pdf_of(const PlottedView& view);
 

@@ -1,4 +1,4 @@
-// False colours for densities.
+// False colours for pdfs.
 #pragma once
 
 #include "images/picture.h"
@@ -12,7 +12,7 @@ namespace acdf::tools {
 /// sRGB, in [0, 1] as it is displayed.
 using Colour = std::array<float, 3>;
 
-/// Density 0: no sample ever falls there. A neutral grey that the colour map does not contain.
+/// Pdf 0: no sample ever falls there. A neutral grey that the colour map does not contain.
 constexpr Colour zero_colour = {0.25f, 0.25f, 0.25f};
 /// Outside of the disc, and around the picture.
 constexpr Colour background = {1.0f, 1.0f, 1.0f};
@@ -22,7 +22,7 @@ enum class ColourMap {
     diverging ///< blue over a light grey, in the middle of the range, to red: for ratios
 };
 
-/// RGB floats as displayed: the logarithm of the density from range.low to range.high, zero_colour where it is 0,
+/// RGB floats as displayed: the logarithm of the pdf from range.low to range.high, zero_colour where it is 0,
 /// background where nothing is shown.
 images::Picture false_colour(const DensityImage& image, const DensityRange& range,
                              ColourMap map = ColourMap::rainbow);

@@ -1,4 +1,4 @@
-// acdf plot: a density in false colours, as in Lawrence et al. 2005, Fig. 5 and 9.
+// acdf plot: a pdf in false colours, as in Lawrence et al. 2005, Fig. 5 and 9.
 #include "tools/cli/choice.h"
 #include "tools/cli/comma_list.h"
 #include "tools/cli/help.h"

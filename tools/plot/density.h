@@ -1,4 +1,4 @@
-// Densities over the sphere as images: what `acdf plot` turns into colours.
+// Pdfs over the sphere as images: what `acdf plot` turns into colours.
 #pragma once
 
 #include "build/probe/projection.h"
@@ -13,13 +13,13 @@
 
 namespace acdf::tools {
 
-/// Density in sr^-1 of a unit direction. Called from several threads.
+/// The pdf in sr^-1 of a unit direction. Called from several threads.
 using Density = std::function<float(const float direction[3])>;
 
-/// The stored density, exactly. The view's File must outlive the result.
+/// The stored pdf, exactly. The view's File must outlive the result.
 Density pdf_of(const EnvironmentView& view);
 
-/// The density proportional to `target` at full resolution (nearest lookup). `target` must outlive the result and
+/// The pdf proportional to `target` at full resolution (nearest lookup). `target` must outlive the result and
 /// have energy.
 Density pdf_of(const compress::Target& target);
 
@@ -35,7 +35,7 @@ struct PlotMap : build::Map {
     PlotMap(build::Layout layout, int width, int height) : build::Map{layout, width, height} {}
 };
 
-/// A density at the centres of the pixels of `map`.
+/// A pdf at the centres of the pixels of `map`.
 struct DensityImage {
     PlotMap map;
     std::vector<float> density; ///< height x width, sr^-1, or shows_nothing

@@ -21,7 +21,7 @@ std::vector<std::uint8_t> encode_png(const images::Picture& picture, const Image
 /// The floats of an RGB image as they are. Throws std::runtime_error.
 std::vector<std::uint8_t> encode_rgb_exr(const images::Picture& picture, const ImageNotes& notes);
 
-/// One float channel Y: the density in sr^-1, and 0 where nothing is shown. Throws std::runtime_error.
+/// One float channel Y: the pdf in sr^-1, and 0 where nothing is shown. Throws std::runtime_error.
 std::vector<std::uint8_t> encode_exr(const DensityImage& image, const ImageNotes& notes);
 
 } // namespace acdf::tools

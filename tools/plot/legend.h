@@ -19,10 +19,10 @@ struct LegendLayout {
     int width = 0, height = 0; ///< of the whole
     int font_size = 0;
     Box picture, bar;
-    Box zero;            ///< swatch of density 0, below the bar
+    Box zero;            ///< swatch of pdf 0, below the bar
     int tick_length = 0; ///< to the right of the bar
 
-    /// The row in which a density's tick is drawn.
+    /// The row in which a pdf's tick is drawn.
     int row_of(double density, const DensityRange& range) const;
 };
 
@@ -31,7 +31,7 @@ LegendLayout legend_layout(int picture_width, int picture_height);
 struct Legend {
     std::vector<std::string> title; ///< parts by importance; those that do not fit are left out
     DensityRange range;
-    bool shows_zero = false; ///< explain the colour of density 0
+    bool shows_zero = false; ///< explain the colour of pdf 0
     bool per_steradian = true;
     ColourMap colours = ColourMap::rainbow;
 };

@@ -1,4 +1,4 @@
-// The density of a local environment for one normal, at a position or anywhere, and its horizon.
+// The pdf of a local environment for one normal, at a position or anywhere, and its horizon.
 #pragma once
 
 #include "images/picture.h"
@@ -21,7 +21,7 @@ struct PlottedNormal {
     std::optional<std::array<float, 3>> position = {}; ///< a position of the file's scene
 };
 
-/// The stored density, exactly. The view's File must outlive the result.
+/// The stored pdf, exactly. The view's File must outlive the result.
 Density pdf_of(const PlottedNormal& plotted);
 
 /// The borders of cells, as of environments.

@@ -12,7 +12,7 @@ constexpr double low_share_of_sphere = 0.01;
 constexpr double high_share_of_probability = 0.001;
 constexpr double least_decades = 1.0, most_decades = 8.0;
 
-// Histogram over log10 of the density: float's range, in steps finer than the rounding that follows.
+// Histogram over log10 of the pdf: float's range, in steps finer than the rounding that follows.
 constexpr int bins_a_decade = 50, lowest_decade = -46, highest_decade = 39;
 constexpr int bin_count = (highest_decade - lowest_decade) * bins_a_decade;
 

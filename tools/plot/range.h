@@ -1,4 +1,4 @@
-// The densities that the colours of a plot stand for.
+// The pdfs that the colours of a plot stand for.
 #pragma once
 
 #include "tools/plot/density.h"
@@ -9,15 +9,15 @@
 
 namespace acdf::tools {
 
-/// Densities in sr^-1 shown by the first and the last colour; 0 < low < high.
+/// Pdfs in sr^-1 shown by the first and the last colour; 0 < low < high.
 struct DensityRange {
     double low = 0.0, high = 0.0;
 
-    /// Where a density lies in the range on a logarithmic scale: 0 at or below low, 1 at or above high.
+    /// Where a pdf lies in the range on a logarithmic scale: 0 at or below low, 1 at or above high.
     double position(double density) const;
 };
 
-/// A range that few outliers cannot stretch: of the positive densities it leaves out the lowest that cover 1 % of
+/// A range that few outliers cannot stretch: of the positive pdfs it leaves out the lowest that cover 1 % of
 /// the sphere and the highest that hold 0.1 % of the probability; then it is rounded outwards to 1, 2 or 5 times
 /// a power of ten. One to eight decades.
 DensityRange automatic_range(const DensityImage& image);
@@ -28,14 +28,14 @@ std::optional<DensityRange> parse_range(const std::string& text);
 /// As parse_range reads it.
 std::string to_string(const DensityRange& range);
 
-/// A round density: mantissa times ten to the exponent.
+/// A round pdf: mantissa times ten to the exponent.
 struct Tick {
     int mantissa = 1, exponent = 0; ///< mantissa in [1, 9]
 
     double density() const;
 };
 
-/// All round densities in the range, ascending.
+/// All round pdfs in the range, ascending.
 std::vector<Tick> ticks(const DensityRange& range);
 
 /// Whether to label a tick: those of powers of ten; in a range of up to two decades those of 2 and 5 too, and in a

@@ -1,4 +1,4 @@
-// What `acdf plot` shows: a stored density, or that of a probe, and the words of its title.
+// What `acdf plot` shows: a stored pdf, or that of a probe, and the words of its title.
 #pragma once
 
 #include "input/normals/scene.h"
@@ -22,7 +22,7 @@ enum class PlotProjection { automatic, latlong, angular, hemisphere };
 struct PlotArguments {
     std::string file, output, range, view;
     std::vector<float> normal, position;
-    std::string mesh; // the cells over it are shown, not a density
+    std::string mesh; // the cells over it are shown, not a pdf
     input::UpAxis up = input::UpAxis::z;
     std::vector<double> from, to; // the camera
     input::ProbeOptions input;

@@ -129,7 +129,7 @@ void for_each_half_vector(const compress::View& view, const double wo[3], std::u
     for_some_half_vectors(view, wo, columns, columns, rows, visit);
 }
 
-/// The densities of a file, bit for bit those of its BrdfView: of several directions at once, by vectors where they
+/// The pdfs of a file, bit for bit those of its BrdfView: of several directions at once, by vectors where they
 /// serve.
 class StoredPdfs {
 public:
@@ -144,7 +144,7 @@ public:
         else brdf_pdf_batch(brdf_, view, wi, count, out);
     }
     const AcdfBrdf& brdf() const { return brdf_; }
-    /// Whether both sides of all views have the same densities.
+    /// Whether both sides of all views have the same pdfs.
     bool mirrored() const { return acdf_brdf_mirrored(&brdf_) && brdf_.views->phi_count == 1; }
 
 private:

@@ -1,4 +1,4 @@
-// How far the stored densities of a BRDF are from what it reflects, for views between those that are stored.
+// How far the stored pdfs of a BRDF are from what it reflects, for views between those that are stored.
 #pragma once
 
 #include "compress/brdf/target.h"
@@ -12,7 +12,7 @@
 
 namespace acdf::build {
 
-/// Of one view: p is the stored density, f = rho cos(theta_i), both over the directions wi.
+/// Of one view: p is the stored pdf, f = rho cos(theta_i), both over the directions wi.
 struct ViewAccuracy {
     compress::View view;
     double albedo = 0.0; ///< integral of f; 0: all of the rest is 0 but `share_above_horizon`
@@ -31,7 +31,7 @@ struct BrdfAccuracy : builder::BrdfAccuracy {
     compress::View worst_view;
 };
 
-/// What p is asked of: the density of wi for wo, in sr^-1. Called by several threads at once.
+/// What p is asked of: the pdf of wi for wo, in sr^-1. Called by several threads at once.
 using ViewPdf = std::function<double(const double wo[3], const double wi[3])>;
 
 /// `count` views with cos(theta_o) stratified and uniform in [low, high] and azimuths as random as a hash makes
@@ -39,7 +39,7 @@ using ViewPdf = std::function<double(const double wo[3], const double wi[3])>;
 std::vector<compress::View> random_views(std::uint32_t count, bool isotropic, double low = 0.1, double high = 1.0);
 
 /// Sums over a grid of half-vectors, rows x columns, finer than any fit sees and not aligned with it, and over the
-/// same grid the part of samples that falls below the horizon: no samples are taken. The density is taken to
+/// same grid the part of samples that falls below the horizon: no samples are taken. The pdf is taken to
 /// integrate to 1, and counts as if it did over the grid, too: what the grid misses of a narrow lobe would else be
 /// told as variance or as the lack of it.
 ///
@@ -58,19 +58,19 @@ std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflec
                                         const std::vector<compress::View>& views, Sides sides = Sides::any,
                                         std::uint32_t columns = 251, std::uint32_t rows = 601);
 
-/// summary(measure_views(density, ...)).relative_variance of several densities, which throws alike: what is
+/// summary(measure_views(pdf, ...)).relative_variance of several pdfs, which throws alike: what is
 /// reflected is looked up once for all of them.
 std::vector<double> relative_variances(const std::vector<ViewPdf>& densities, const compress::Reflected& reflected,
                                        const std::vector<compress::View>& views, std::uint32_t columns = 251,
                                        std::uint32_t rows = 601);
 
-/// What views reflect over a grid of measure_views, looked up once: for searches that try many densities. Of the
+/// What views reflect over a grid of measure_views, looked up once: for searches that try many pdfs. Of the
 /// first views at most `most_kept` numbers are kept (256 MiB); of others they are looked up each time.
 class ReflectedViews {
 public:
     ReflectedViews(const compress::Reflected& reflected, const std::vector<compress::View>& views,
                    std::uint32_t columns, std::uint32_t rows, std::size_t most_kept = std::size_t{1} << 25);
-    /// That of summary(measure_views(density, ...)), which throws alike.
+    /// That of summary(measure_views(pdf, ...)), which throws alike.
     double relative_variance(const ViewPdf& density) const;
 
 private:
@@ -80,7 +80,7 @@ private:
     std::vector<std::vector<double>> light_; ///< of the first views
 };
 
-/// The same of a density that integrates to less than 1 because some of its samples are lost: what the integral
+/// The same of a pdf that integrates to less than 1 because some of its samples are lost: what the integral
 /// lacks is variance.
 std::vector<ViewAccuracy> with_lost_samples(std::vector<ViewAccuracy> views);
 

@@ -19,7 +19,7 @@ inline double recommendable_share(std::size_t k) {
     return (double(k) + 1.0) / (double(recommendable_shares) + 1.0);
 }
 
-/// Sums over texels of an integrand f, for densities p of the file and b of its partner. Of N samples a `share` is
+/// Sums over texels of an integrand f, for pdfs p of the file and b of its partner. Of N samples a `share` is
 /// sampled from the file, the others from the partner.
 class Combination {
 public:
@@ -35,7 +35,7 @@ public:
             ++violations_;
             return;
         }
-        // What weights multiply, over the larger density so that squares stay in range: 1 and `less`.
+        // What weights multiply, over the larger pdf so that squares stay in range: 1 and `less`.
         const double less = std::min(ours, theirs) / most, weighed = power_ ? less * less : less;
         const double of_larger = 1.0 / (1.0 + weighed), of_other = weighed * of_larger;
         const double ratio = f / most;

@@ -1,4 +1,4 @@
-// How far a stored density is from its target, by summation over every texel: no samples, no noise.
+// How far a stored pdf is from its target, by summation over every texel: no samples, no noise.
 #pragma once
 
 #include "compress/target.h"

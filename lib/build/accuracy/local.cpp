@@ -22,12 +22,12 @@ namespace {
 using compress::Sum;
 using compress::Target;
 
-/// What a tilt makes of the density of a texel, over its mean: the harmonic mean and the smallest.
+/// What a tilt makes of the pdf of a texel, over its mean: the harmonic mean and the smallest.
 struct Slope {
     float harmonic = 1.0f, smallest = 1.0f;
 };
 
-/// What does not depend on the normal: for each texel its tile and its mean density within the tile, sr^-1.
+/// What does not depend on the normal: for each texel its tile and its mean pdf within the tile, sr^-1.
 struct TilePicture {
     std::vector<std::uint32_t> tile;
     std::vector<double> density;

@@ -9,7 +9,7 @@ namespace acdf::build {
 /// Of diffuse surfaces of those normals, lit by the target (see Accuracy::combined).
 struct PartnerAccuracy {
     double relative_variance = 0.0;       ///< mean over the normals that see light
-    double max_weight = 0.0;              ///< largest f over combined density, over its mean
+    double max_weight = 0.0;              ///< largest f over combined pdf, over its mean
     std::uint64_t support_violations = 0; ///< of both together
 };
 

@@ -1,4 +1,4 @@
-// Densities that are linear across a cell, one grid step after the other.
+// Pdfs that are linear across a cell, one grid step after the other.
 #pragma once
 
 #include <acdf/sample.h>
@@ -8,7 +8,7 @@
 
 namespace acdf::build {
 
-/// Means over one grid step of functions of the tilt density g, which is linear there.
+/// Means over one grid step of functions of the tilt pdf g, which is linear there.
 struct StepMeans {
     double g = 1.0, square = 1.0, reciprocal = 1.0, logarithm = 0.0, smallest = 1.0;
 };

@@ -1,4 +1,4 @@
-// How far the stored densities of a table are from the table, by summation over every number of it.
+// How far the stored pdfs of a table are from the table, by summation over every number of it.
 #pragma once
 
 #include "compress/grid.h"
@@ -12,7 +12,7 @@
 
 namespace acdf::build {
 
-/// Of one bin: p is its stored density, f its part of the table, p* = f / (integral of f).
+/// Of one bin: p is its stored pdf, f its part of the table, p* = f / (integral of f).
 struct BinAccuracy {
     /// Variance of one sample of the estimator f/p, over (integral of f)^2. Infinite with a support violation.
     double relative_variance = 0.0;

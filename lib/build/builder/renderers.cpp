@@ -26,7 +26,7 @@ constexpr const char* closed = "how its light takes samples is not published, so
 
 constexpr Axes usd{2, 3, 1}, pbrt{-1, 2, 3}; // (y, z, x) and (-x, y, z)
 
-// Where it is not known whether rows repeat, they do: then a file has density for either.
+// Where it is not known whether rows repeat, they do: then a file has pdf for either.
 constexpr Renderer known[] = {
     {"pbrt-v4",
      looked_up(Domain::octahedral, ACDF_FILTER_NEAREST, Wrap::clamp, average),

@@ -73,7 +73,7 @@ double disc_density(Layout layout, double a, double b) {
     return r > 0.0 ? compress::pi * compress::sine_cosine(r).sine / r : compress::pi * compress::pi;
 }
 
-// Integral of the density over [b0, b1] at a, by Gauss-Legendre with four nodes.
+// Integral of the pdf over [b0, b1] at a, by Gauss-Legendre with four nodes.
 double disc_slice(Layout layout, double a, double b0, double b1) {
     constexpr double node[2] = {0.33998104358485626, 0.86113631159405258};
     constexpr double weight[2] = {0.65214515486254614, 0.34785484513745386};

@@ -51,7 +51,7 @@ void RepairedRows::pass_on(int first, int count, const float* rgb) {
     rows_.take(first, count, rgb);
 }
 
-// The smallest normal number: 0 for all that light is used for, but for its density.
+// The smallest normal number: 0 for all that light is used for, but for its pdf.
 bool RepairedRows::light_if_black() {
     if (!has_rows_ || !black_ || !options_.uniform_if_black) return lit_;
     const std::vector<float> row(std::size_t{3} * static_cast<std::size_t>(width_),

@@ -24,7 +24,7 @@ using compress::Target;
 constexpr int kMaxHalvings = 6;
 constexpr int kRowsAtOnce = 64;
 /// Of a dark texel beside a lit one: its g, of the largest beside it. A border that was cut a hair off leaves no
-/// light without density then.
+/// light without pdf then.
 constexpr double kGlimpse = 1e-4;
 // Solid angles are added up as integers: their sum is the same in any order, so on any number of threads.
 constexpr double kUnits = 0x1p61 / (4.0 * ACDF_PI);

@@ -1,4 +1,4 @@
-// The target of an environment map on a grid of directions that need not be its own: what a density that is
+// The target of an environment map on a grid of directions that need not be its own: what a pdf that is
 // constant on the grid's texels is worth to a renderer that looks the map itself up, with its own filter.
 #pragma once
 
@@ -37,13 +37,13 @@ struct SourceTarget {
 };
 
 /// g is the root mean square of f over what a texel of the grid overlaps of the map's, so that E[(f/p)^2] of a
-/// density p that is constant on the grid is exact for the map, and no direction with light lies in a dark texel.
+/// pdf p that is constant on the grid is exact for the map, and no direction with light lies in a dark texel.
 /// The integral of f is that over the map's texels. The same for any number of threads. Throws
 /// std::invalid_argument on radiance that is not finite.
 SourceTarget source_target(const Map& map, const float* rgb, const Domain& domain,
                            const compress::TargetOptions& options);
 
-/// The target on the grid of either parameterization that loses least: where the best density that is constant on
+/// The target on the grid of either parameterization that loses least: where the best pdf that is constant on
 /// its texels has less variance.
 SourceTarget source_target_losing_least(const Map& map, const float* rgb, const compress::TargetOptions& options);
 

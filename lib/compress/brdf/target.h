@@ -55,10 +55,10 @@ struct HalfGrid {
     Latitude latitude(double row_position) const { return Latitude(row_position / row_resolution); }
 };
 
-/// The least share of all stored albedos that a bin is stored with: black views keep a density.
+/// The least share of all stored albedos that a bin is stored with: black views keep a pdf.
 constexpr double kLeastShare = 1e-12;
 
-/// The square of a view's normalised density over the half-vectors: what a fit needs to know of it.
+/// The square of a view's normalised pdf over the half-vectors: what a fit needs to know of it.
 struct ViewTarget {
     View view;
     double albedo = 0.0;       ///< integral of rho cos; 0: nothing is reflected, and `square` is the prior
@@ -66,8 +66,8 @@ struct ViewTarget {
 };
 
 /// f is taken at the centre of each square, times the Jacobian 4 |wo . wh|. To its square is added, wherever any
-/// part of a square reflects above the horizon, that of a small diffuse density (kPrior of all): a value that the
-/// centres miss then still meets a density. In an isotropic BRDF phi_h counts from the azimuth of the view.
+/// part of a square reflects above the horizon, that of a small diffuse pdf (kPrior of all): a value that the
+/// centres miss then still meets a pdf. In an isotropic BRDF phi_h counts from the azimuth of the view.
 ViewTarget view_target(const Reflected& reflected, const HalfGrid& grid, const View& view);
 constexpr double kPrior = 0.001;
 

@@ -10,7 +10,7 @@
 namespace acdf::compress {
 namespace {
 
-/// Where a view's reflections are evaluated, as a density over half-vectors.
+/// Where a view's reflections are evaluated, as a pdf over half-vectors.
 class Reflections {
 public:
     Reflections(const Reflected& reflected, const View& view, double albedo)
@@ -52,7 +52,7 @@ struct Azimuth {
     double of[2];
 };
 
-/// The mean over a square of the square of the density.
+/// The mean over a square of the square of the pdf.
 double mean_square(const Reflections& reflections, const HalfGrid& grid, std::uint32_t r, std::uint32_t c) {
     constexpr int kPoints = 4; // each way
     double sum = 0.0;

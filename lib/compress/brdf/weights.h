@@ -13,8 +13,8 @@ namespace acdf::compress {
 /// of nothing else are where the largest weights are: a fit that looks at centres alone takes them to be dark.
 struct HorizonSquare {
     std::uint32_t square = 0;
-    float peak = 0.0f;        ///< the density where the square rises first, in 1 / sr of half-vectors
-    float mean_square = 0.0f; ///< of the density over the whole square
+    float peak = 0.0f;        ///< the pdf where the square rises first, in 1 / sr of half-vectors
+    float mean_square = 0.0f; ///< of the pdf over the whole square
 };
 
 /// Those of one view; `albedo` > 0 is what its values are divided by.

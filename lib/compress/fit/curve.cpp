@@ -33,7 +33,7 @@ std::vector<double> cumulative(const Distribution& distribution) {
     return y;
 }
 
-/// The density at the grid borders: the mean of the steps on either side.
+/// The pdf at the grid borders: the mean of the steps on either side.
 std::vector<double> border_density(const Distribution& distribution) {
     const std::size_t n = distribution.mass.size();
     std::vector<double> density(n), y(n + 1);

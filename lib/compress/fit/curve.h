@@ -23,19 +23,19 @@ struct CurveBudget {
 /// `segments` segments of (nearly) equally many grid steps.
 Curve fit_curve_uniform(const Distribution& distribution, const CurveBudget& budget);
 
-/// Douglas-Peucker on the CDF: the density is constant on each segment (Lawrence et al. 2005, §4.2).
+/// Douglas-Peucker on the CDF: the pdf is constant on each segment (Lawrence et al. 2005, §4.2).
 /// epsilon is in units of cumulative probability.
 Curve fit_curve_cdf(const Distribution& distribution, const CurveBudget& budget);
 
-/// Douglas-Peucker on the PDF: the density is linear on each segment (ibid.). epsilon is relative to the
-/// largest density. Each segment keeps its exact mass, so that nothing needs renormalising and nothing with
-/// energy gets density 0; its slope is the one that minimises the integral of f^2/p.
+/// Douglas-Peucker on the PDF: the pdf is linear on each segment (ibid.). epsilon is relative to the
+/// largest pdf. Each segment keeps its exact mass, so that nothing needs renormalising and nothing with
+/// energy gets pdf 0; its slope is the one that minimises the integral of f^2/p.
 Curve fit_curve_pdf(const Distribution& distribution, const CurveBudget& budget);
 
 /// A curve with the given interior knots whose segments carry their mass.
 Curve curve_through(const Distribution& distribution, std::vector<std::uint32_t> knots);
 
-/// The slope s in (-1, 1) for which the density 1 + s (2t - 1) on steps [begin, end) costs least:
+/// The slope s in (-1, 1) for which the pdf 1 + s (2t - 1) on steps [begin, end) costs least:
 /// argmin of the integral of f^2 / (1 + s (2t - 1)).
 double best_tilt(const Distribution& distribution, std::uint32_t begin, std::uint32_t end);
 

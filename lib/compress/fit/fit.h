@@ -37,7 +37,7 @@ struct Goal {
     Kind kind = Kind::cells;
     std::uint32_t cells = 4096; ///< cells: at most so many
     std::uint64_t budget = 0;   ///< budget: the file takes at most so many bytes
-    double variance = 0.0;      ///< variance: the stored density's relative variance is at most this
+    double variance = 0.0;      ///< variance: the stored pdf's relative variance is at most this
 };
 
 struct FitOptions {

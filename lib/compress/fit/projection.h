@@ -39,7 +39,7 @@ struct Moments {
     double cost() const;
     /// What its probability is proportional to: without an MIS partner, its cost.
     double share(const Filling* filling) const;
-    /// The largest f/p of the part as one cell, relative to its best density: peak over root mean square.
+    /// The largest f/p of the part as one cell, relative to its best pdf: peak over root mean square.
     double weight() const;
     /// Whether that is above `heaviest`, infinity where it does not matter.
     bool above(double heaviest) const {

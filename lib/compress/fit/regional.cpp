@@ -22,7 +22,7 @@ Curve fit_curve(AcdfFit fit, const Distribution& distribution, const CurveBudget
     }
 }
 
-/// Energy of each row: the marginal density times the row's measure.
+/// Energy of each row: the marginal pdf times the row's measure.
 Distribution marginal_distribution(const Target& target) {
     Distribution marginal{std::vector<double>(target.rows), target.row_measure};
     parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
@@ -85,7 +85,7 @@ Curve with_knots(const Distribution& distribution, Curve curve, const std::vecto
     return curve;
 }
 
-/// The mean over the region's rows of their conditional densities, each
+/// The mean over the region's rows of their conditional pdfs, each
 /// weighted by its energy or (eq. 4) by its extent alone; dark rows have no
 /// conditional and are left out.
 Distribution regional_conditional(const Target& target, const Distribution& marginal, Conditional weighting,

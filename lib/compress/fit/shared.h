@@ -20,7 +20,7 @@ struct SharedGrid {
     std::size_t size() const { return row_measure.size() * column_measure.size(); }
 };
 
-/// One of the distributions: row-major squares of the density that it is to have, at best, and what it counts.
+/// One of the distributions: row-major squares of the pdf that it is to have, at best, and what it counts.
 struct SharedTarget {
     std::vector<float> square;
     double weight = 1.0;

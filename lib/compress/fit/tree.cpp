@@ -36,7 +36,7 @@ struct Trial {
 /// The same, stored, and what they come to.
 struct Candidate {
     Fitted fitted;
-    double variance = 0.0;   ///< relative variance of the stored density, mean over the bins
+    double variance = 0.0;   ///< relative variance of the stored pdf, mean over the bins
     double max_weight = 0.0; ///< the largest f/p over its mean
 };
 

@@ -22,7 +22,7 @@ public:
     /// The target, beside the partner of the mean normal: what curves within tiles are fitted to.
     Target filled(const Target& target) const;
     /// Light as its spread within a tile counts: (L - T)^2 / L above the threshold T. A share that is off by a
-    /// factor 1 + e lets the combined density be off by 1 + e (L - T) / L.
+    /// factor 1 + e lets the combined pdf be off by 1 + e (L - T) / L.
     Target excess(const Target& target) const;
 
     /// Of light of a bin, `alone` and measure as in Moments: its share, see Filling.

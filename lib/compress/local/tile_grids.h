@@ -20,7 +20,7 @@ struct TileGrid {
     std::vector<double> cost;         ///< sqrt(measure . integral of g^2) of each cell, line by line
     std::vector<std::uint64_t> lines; ///< steps of each line: at least one where there is light
     std::vector<std::uint64_t> cells; ///< steps of each cell in its line: at least one where there is light
-    /// sqrt(integral of g^2 / p) with the density p that the steps stand for.
+    /// sqrt(integral of g^2 / p) with the pdf p that the steps stand for.
     double whole = 0.0;
 
     /// The probability of a cell within the tile.

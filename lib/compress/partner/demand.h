@@ -9,12 +9,12 @@
 namespace acdf::compress {
 
 /// What light of radiance L from one direction adds to the sum of the noise of all normals, if it is sampled with
-/// n_b / n_l times the density y: L^2 square(y) + L mean(y). At nodes, with how fast either falls there.
+/// n_b / n_l times the pdf y: L^2 square(y) + L mean(y). At nodes, with how fast either falls there.
 struct NoiseCurve {
     static constexpr std::size_t nodes = 24;
     std::array<double, nodes> square{}, mean{}, square_fall{}, mean_fall{};
 
-    /// y of a node, sr^-1: 0, then from far below the density of an MIS partner to where that no longer counts.
+    /// y of a node, sr^-1: 0, then from far below the pdf of an MIS partner to where that no longer counts.
     static double y(std::size_t node);
 };
 

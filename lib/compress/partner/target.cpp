@@ -193,7 +193,7 @@ double solve_threshold(const Target& target, const std::vector<float>& density, 
     return low;
 }
 
-/// What cells cost beside an MIS partner of that density.
+/// What cells cost beside an MIS partner of that pdf.
 void fill(Target& target, const std::vector<float>& density, double nu) {
     target.filling = std::make_shared<const Filling>();
     target.left.resize(target.values.size());
@@ -206,7 +206,7 @@ void fill(Target& target, const std::vector<float>& density, double nu) {
 }
 
 /// The same light times a power of two, so that the brightest texel has from 1/2 to 1: what is computed from it is
-/// in the range of floats. Densities do not change.
+/// in the range of floats. Pdfs do not change.
 Target in_range(Target target) {
     target.mean_square = 0.0;
     target.peaks.clear();

@@ -1,5 +1,5 @@
 // Tables of the RGL material database: interpolation, and the warp that samples from them (Dupuy and Jakob 2018,
-// §4; marginal and conditional CDFs of a bilinear density).
+// §4; marginal and conditional CDFs of a bilinear pdf).
 #pragma once
 
 #include <array>
@@ -49,8 +49,8 @@ struct RglTable {
     Real bilinear(const RglMix<Real>& mix, const Place<Real>& place, std::size_t channel = 0) const;
 };
 
-/// A density over the unit square for each view, and the map from uniform numbers to it, rows (y) first. Between
-/// slices densities and CDFs are interpolated alike, so they stay each other's derivative.
+/// A pdf over the unit square for each view, and the map from uniform numbers to it, rows (y) first. Between
+/// slices pdfs and CDFs are interpolated alike, so they stay each other's derivative.
 class RglWarp {
 public:
     RglWarp() = default;
@@ -60,7 +60,7 @@ public:
     template <class Real>
     struct Point {
         Real x = 0, y = 0;
-        Real pdf = 0; ///< of the density at the point within the square (for invert: at the one given)
+        Real pdf = 0; ///< of the pdf at the point within the square (for invert: at the one given)
     };
     template <class Real>
     Real pdf(const RglMix<Real>& mix, Real x, Real y) const;
@@ -72,7 +72,7 @@ public:
     const RglTable& table() const { return density_; }
 
 private:
-    /// Integral of the density along a row's corners.
+    /// Integral of the pdf along a row's corners.
     template <class Real>
     Real row_mass(const RglMix<Real>& mix, std::size_t row) const;
     template <class Real>

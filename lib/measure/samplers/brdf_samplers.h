@@ -31,7 +31,7 @@ public:
 
     BrdfSample sample(const double wo[3], const double u[2]) const; ///< u in [0, 1)
     double pdf(const double wo[3], const double wi[3]) const { return pdf(wo, scale(wo), wi); }
-    /// What all densities of a view are multiplied by; 0 below the surface.
+    /// What all pdfs of a view are multiplied by; 0 below the surface.
     double scale(const double wo[3]) const;
     /// The same for a view whose scale is known: D(wh) by the half-vector as it is long, |wh|^4 of what the
     /// ellipsoid makes of it, so that there is no root.

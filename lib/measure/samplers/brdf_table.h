@@ -25,7 +25,7 @@ enum class BrdfTableKind {
 };
 
 /// Every view is served by the bin that it lies in, also if the BRDF is isotropic: give views of any azimuth. In a
-/// cell the density is constant per solid angle of wh.
+/// cell the pdf is constant per solid angle of wh.
 class TabulatedBrdf {
 public:
     /// `isotropic`: the bins of all phi_o are made from those of the first. Uses all cores; the result does not

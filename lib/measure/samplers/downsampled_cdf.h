@@ -9,7 +9,7 @@
 namespace acdf::measure {
 
 /// A CDF (FullCdf) of columns x rows cells, each as bright as the mean over its texels: wherever there is light
-/// there is density. Cells are equal but for rounding to whole texels; directions are uniform in a cell.
+/// there is pdf. Cells are equal but for rounding to whole texels; directions are uniform in a cell.
 class DownsampledCdf {
 public:
     /// Throws std::invalid_argument where there are no cells, more cells than texels along an axis, or no light.

@@ -12,7 +12,7 @@ namespace acdf::measure {
 
 /// The mean of f/p over n samples; those below the horizon and those that sample nothing count as 0. With the full
 /// CDF this is its use "with rejection below the horizon": what is rejected is lost. To sample others instead one
-/// would have to know each normal's share of the flux above its horizon, by which their density grows.
+/// would have to know each normal's share of the flux above its horizon, by which their pdf grows.
 class SingleEstimator : public Estimator {
 public:
     /// Throws std::invalid_argument for n = 0.
@@ -40,7 +40,7 @@ enum class Heuristic {
 };
 
 /// Multi-sample multiple importance sampling (Veach and Guibas, SIGGRAPH 1995): the sum over samplers i and their
-/// samples x of w_i(x) f(x) / (n_i p_i(x)). Unbiased where at least one density is > 0 wherever f is.
+/// samples x of w_i(x) f(x) / (n_i p_i(x)). Unbiased where at least one pdf is > 0 wherever f is.
 class MisEstimator : public Estimator {
 public:
     /// Samplers with n = 0 are left out. Throws std::invalid_argument where none remains, or several are automatic,

@@ -70,7 +70,7 @@ std::uint64_t FullCdf::bytes() const {
 double full_cdf_relative_variance(const compress::Target& target) {
     const FullCdf cdf(target);
     const double perfect = compress::integral(target);
-    compress::Sum variance; // around that of the perfect density, so that a small one keeps its digits
+    compress::Sum variance; // around that of the perfect pdf, so that a small one keeps its digits
     for (std::uint32_t r = 0; r < target.rows; ++r)
         for (std::uint32_t c = 0; c < target.columns; ++c) {
             const double f = target.row(r)[c] / perfect, p = cdf.pdf(c, r);

@@ -15,14 +15,14 @@ class FullCdf {
 public:
     explicit FullCdf(const compress::Target& target);
 
-    /// Continuous grid positions and the density over the target's measure there (sr^-1 for a probe).
+    /// Continuous grid positions and the pdf over the target's measure there (sr^-1 for a probe).
     struct Draw {
         double column = 0.0, row = 0.0;
         double pdf = 0.0;
     };
     /// u0 (columns) and u1 (rows) in [0, 1).
     Draw sample(float u0, float u1) const;
-    /// Density on a grid square.
+    /// Pdf on a grid square.
     double pdf(std::uint32_t column, std::uint32_t row) const;
     /// Size of the tables.
     std::uint64_t bytes() const;

@@ -1,4 +1,4 @@
-// GgxSampler as product sampling asks for a lobe (acdf/product/lobe.h). Its density over the cosine stands for the
+// GgxSampler as product sampling asks for a lobe (acdf/product/lobe.h). Its pdf over the cosine stands for the
 // BRDF.
 #pragma once
 

@@ -13,7 +13,7 @@ namespace acdf::measure {
 /// What all points have in common.
 class IdealRows {
 public:
-    /// `shares`: of as many samples for one of cos / pi the density is filled up for both together (water filling,
+    /// `shares`: of as many samples for one of cos / pi the pdf is filled up for both together (water filling,
     /// docs/method.md); 0: it is to be used alone. Throws as ProbeGrid does.
     IdealRows(const compress::Target& target, double shares);
 

@@ -45,7 +45,7 @@ private:
 };
 
 /// Resampled importance sampling (Talbot, Cline, Egbert, EGSR 2005): M candidates x_i from the full CDF, one of
-/// them kept with probability proportional to w_i = f(x_i)/p(x_i). The density of what is kept has no closed form,
+/// them kept with probability proportional to w_i = f(x_i)/p(x_i). The pdf of what is kept has no closed form,
 /// which is why there is no pdf(): no multiple importance sampling but with further approximations.
 class Resampling {
 public:
@@ -86,7 +86,7 @@ private:
     std::uint32_t candidates_;
 };
 
-/// Directions with density cos / pi: knows the surface, not the light.
+/// Directions with pdf cos / pi: knows the surface, not the light.
 class CosineHemisphere {
 public:
     explicit CosineHemisphere(const compress::Target& target) : target_(target), cosines_(target) {}

@@ -12,7 +12,7 @@
 
 namespace acdf::measure {
 
-/// Half of the samples of `a`, half of `b`, by chance, with the density of both: candidates of resampled importance
+/// Half of the samples of `a`, half of `b`, by chance, with the pdf of both: candidates of resampled importance
 /// sampling (ResamplingEstimator). Both must outlive it.
 std::unique_ptr<LightSampler> half_and_half(const LightSampler& a, const LightSampler& b);
 

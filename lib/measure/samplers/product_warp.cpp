@@ -13,7 +13,7 @@
 namespace acdf::measure {
 namespace {
 
-/// A density over the unit square that is bilinear between its corners.
+/// A pdf over the unit square that is bilinear between its corners.
 class BilinearWarp {
 public:
     static constexpr int kSide = 4;
@@ -44,7 +44,7 @@ public:
             for (double& value : row) value = sum > 0.0 ? 4.0 * value / sum : 1.0;
     }
     double density(const double u[2]) const { return between(row_at(0, u[0]), row_at(1, u[0]), u[1]); }
-    /// u becomes a point of the density.
+    /// u becomes a point of the pdf.
     void draw(double u[2]) const {
         u[0] = linear(corner_[0][0] + corner_[1][0], corner_[0][1] + corner_[1][1], u[0]);
         u[1] = linear(row_at(0, u[0]), row_at(1, u[0]), u[1]);
@@ -53,7 +53,7 @@ public:
 private:
     static double between(double a, double b, double t) { return a + t * (b - a); }
     double row_at(int row, double x) const { return between(corner_[row][0], corner_[row][1], x); }
-    /// Of a density that goes from a to b, both positive.
+    /// Of a pdf that goes from a to b, both positive.
     static double linear(double a, double b, double u) {
         return std::min(1.0, u * (a + b) / (a + std::sqrt(between(a * a, b * b, u))));
     }

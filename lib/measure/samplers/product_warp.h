@@ -13,8 +13,8 @@ namespace acdf::measure {
 
 /// `light`: a file of an environment or a local environment; `brdf` a BRDF file. At each point the BRDF (of an
 /// environment times the cosine) is evaluated where the light's sampler takes 4 x 4 stratified pairs of numbers; a
-/// bilinear density over the unit square is fitted to that by least squares, nowhere less than a tenth of the mean.
-/// Numbers are sampled from it and handed to the light. The density of a direction is that of the light times that
+/// bilinear pdf over the unit square is fitted to that by least squares, nowhere less than a tenth of the mean.
+/// Numbers are sampled from it and handed to the light. The pdf of a direction is that of the light times that
 /// of the numbers that sample it. Throws std::invalid_argument where a file is of another kind.
 std::unique_ptr<LightSampler> product_warp_sampler(const File& light, const File& brdf);
 /// The same with an isotropic GGX lobe as the BRDF.

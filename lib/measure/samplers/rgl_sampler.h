@@ -6,9 +6,9 @@
 
 namespace acdf::measure {
 
-/// Warps a uniform point by the luminance of the view, then by the density of visible normals, both bilinear with
+/// Warps a uniform point by the luminance of the view, then by the pdf of visible normals, both bilinear with
 /// marginal and conditional CDFs (Dupuy and Jakob 2018, §4.3); then reflects wo at that normal. Real: float is the
-/// precision of the published program, and what is timed; double is what densities are compared with.
+/// precision of the published program, and what is timed; double is what pdfs are compared with.
 template <class Real>
 class RglSamplerOf {
 public:

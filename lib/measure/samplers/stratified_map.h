@@ -37,7 +37,7 @@ private:
     std::vector<double> cumulative_; ///< of `texels_`, from 0 to 1 in each stratum, this texel included
 };
 
-/// The sum over strata of f/p, one direction each. No density of a single sample is defined (a sample's stratum is
+/// The sum over strata of f/p, one direction each. No pdf of a single sample is defined (a sample's stratum is
 /// its number), so that it does not combine with others.
 class StratifiedEstimator : public Estimator {
 public:

@@ -69,7 +69,7 @@ double PartsAtPoint::estimate(const ScenePoint& point, const ProbeLight& light, 
     return sum / all_;
 }
 
-/// Multi-sample variance by the balance heuristic: the integral of f^2/p, p the mean density, less for each part
+/// Multi-sample variance by the balance heuristic: the integral of f^2/p, p the mean pdf, less for each part
 /// its share of the samples times the square of its mean (Veach and Guibas, SIGGRAPH 1995).
 class PointMoments {
 public:

@@ -25,7 +25,7 @@ class PartsAtPoint {
 public:
     PartsAtPoint(const SamplerParts& of, const ScenePoint& point);
 
-    /// The mean density of all samples, in sr^-1; `own`: of each part.
+    /// The mean pdf of all samples, in sr^-1; `own`: of each part.
     double density(const float direction[3], std::vector<double>& own) const;
     /// Of an estimate.
     std::uint32_t samples() const { return all_; }

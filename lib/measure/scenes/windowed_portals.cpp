@@ -9,7 +9,7 @@
 namespace acdf::measure {
 namespace {
 
-/// Of every cell beside its light, so that none with light that the sums miss has density 0: a share of the mean.
+/// Of every cell beside its light, so that none with light that the sums miss has pdf 0: a share of the mean.
 constexpr double kFloor = 1e-3;
 /// The light of a cell is looked up at this many points along each axis.
 constexpr int kLookups = 4;

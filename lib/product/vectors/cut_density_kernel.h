@@ -1,4 +1,4 @@
-// Densities of cuts (acdf/product/cut_sample.h) over vectors, operation by operation. Internal linkage: see
+// Pdfs of cuts (acdf/product/cut_sample.h) over vectors, operation by operation. Internal linkage: see
 // local_kernel.h.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Samples from cuts of the fast shape over vectors, and their densities: acdf/product/fast_cut.h, operation by
+// Samples from cuts of the fast shape over vectors, and their pdfs: acdf/product/fast_cut.h, operation by
 // operation; see local_kernel.h. Parts and tiles are found lane by lane, cells and directions by vectors, as
 // fast_kernel.h has them.
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace {
 
-/* Any sample or density, for lanes behind the last one. */
+/* Any sample or pdf, for lanes behind the last one. */
 ACDF_LANE void pad_lanes(std::size_t count, FastCells* c) {
     for (std::size_t i = count; i % kLanes != 0; ++i) {
         c->u[0][i] = c->u[1][i] = 0.0;

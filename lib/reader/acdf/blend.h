@@ -3,7 +3,7 @@
  *
  * Boxes are split in two until tiles are left. Splits and tiles are stored once; each bin has a *row* of one byte a
  * split: the probability of its lower part. What a caller samples from is a *mixture* of up to four rows, walked
- * side by side: its density is exactly the weighted sum of theirs, at the price of one more byte read a split and
+ * side by side: its pdf is exactly the weighted sum of theirs, at the price of one more byte read a split and
  * row. Within a tile a tree of curves refines, for all bins alike. */
 #ifndef ACDF_BLEND_H
 #define ACDF_BLEND_H
@@ -71,7 +71,7 @@ ACDF_FN void acdf_range_cut(AcdfRange* range, uint32_t position, int upper) {
 /* The walks below are written for a number of rows that the compiler knows: weights then stay in registers. */
 
 /* What a mixture gives to a tile to which each row gives that part of itself: in this order, so that tables of
- * parts tell the same density. */
+ * parts tell the same pdf. */
 ACDF_INLINE double acdf_mixture_of(const AcdfMixture* mix, const int rows, const double* part) {
     double sum = 0.0;
     int i;

@@ -115,7 +115,7 @@ ACDF_INLINE double acdf_brdf_mirror(double* u0) {
     return v < 0.0 ? -1.0 : 1.0;
 }
 
-/* Density of wi where a cell of probability p covers `area` grid squares. */
+/* The pdf of wi where a cell of probability p covers `area` grid squares. */
 ACDF_INLINE double acdf_brdf_mean_pdf(const AcdfBrdf* brdf, double p, double area, const AcdfBrdfPosition* place) {
     return p * (double)brdf->columns * (double)brdf->rows * place->length / (8.0 * ACDF_PI * place->dot * area);
 }

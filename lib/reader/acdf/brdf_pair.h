@@ -29,7 +29,7 @@ ACDF_INLINE int acdf_brdf_pair_find(const AcdfBrdf* brdf, const AcdfBrdfView* vi
     return 1;
 }
 
-/* The density there. */
+/* The pdf there. */
 ACDF_INLINE float acdf_brdf_pair_found(const AcdfBrdf* brdf, const AcdfBrdfView* view, uint32_t cell,
                                        const AcdfBrdfPosition* place) {
     double p = acdf_brdf_pair_share(brdf, view, cell); /* NaN where no view weighs anything */
@@ -235,7 +235,7 @@ ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* 
 }
 
 /* About what acdf_brdf_pair_sample samples, for a third of its time: the middle of the cell that is guessed, and
- * the density there. Returns 0 where there is none. */
+ * the pdf there. Returns 0 where there is none. */
 ACDF_INLINE int acdf_brdf_pair_about(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0, double u1,
                                      AcdfDirectionSample* out) {
     const AcdfBrdfTables* tables = brdf->tables;

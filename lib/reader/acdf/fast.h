@@ -3,7 +3,7 @@
  * searched by vectors: no walk, no branch on the data. Part of acdf/local.h; freestanding, valid C99, C++17 and
  * CUDA/HIP/SYCL.
  *
- * All that decides which tile is sampled, and with which probability, are integers: so samples and densities agree
+ * All that decides which tile is sampled, and with which probability, are integers: so samples and pdfs agree
  * to the last bit, with vectors or without. */
 #ifndef ACDF_FAST_H
 #define ACDF_FAST_H
@@ -70,7 +70,7 @@ ACDF_INLINE double acdf_fast_scale(double x) {
     return out;
 }
 
-/* A probability as a quotient: that of densities takes the place of its division. */
+/* A probability as a quotient: that of pdfs takes the place of its division. */
 typedef struct AcdfFastShare {
     double of, all;
 } AcdfFastShare;

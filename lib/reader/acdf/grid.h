@@ -31,7 +31,7 @@ ACDF_FN double acdf_grid_solid_angle(const AcdfGrid* grid, const AcdfRange range
            acdf_grid_height(grid, &range[1]);
 }
 
-/* Density per steradian in a cell of probability p, at fractions t[axis] of it in the measures of the axes. */
+/* Pdf per steradian in a cell of probability p, at fractions t[axis] of it in the measures of the axes. */
 ACDF_FN float acdf_grid_pdf(const AcdfGrid* grid, const AcdfRange range[2], const double t[2], double p) {
     return acdf_cell_pdf(p, range[0].high - range[0].low, grid->columns, acdf_grid_height(grid, &range[1]),
                          acdf_tilt_pdf(range[0].tilt, t[0]) * acdf_tilt_pdf(range[1].tilt, t[1]));

@@ -207,7 +207,7 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_find(const AcdfLocal* local, const Acd
     return share;
 }
 
-/* The density, at least `least`, in a cell of such a probability. */
+/* The pdf, at least `least`, in a cell of such a probability. */
 ACDF_INLINE float acdf_local_fast_at_least(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
                                            const AcdfFastShare* share, double least) {
     double height, pdf;

@@ -1,4 +1,4 @@
-/* Densities of local environment maps. Part of acdf/local.h. */
+/* Pdfs of local environment maps. Part of acdf/local.h. */
 #ifndef ACDF_LOCAL_PDF_H
 #define ACDF_LOCAL_PDF_H
 
@@ -88,7 +88,7 @@ ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoin
     return acdf_local_find_inside(local, tile, probability, spot->square, range);
 }
 
-/* The part of the density that follows the light, in a piece that tables know. */
+/* The part of the pdf that follows the light, in a piece that tables know. */
 ACDF_INLINE float acdf_local_piece_pdf(const AcdfLocal* local, const AcdfLocalPoint* point,
                                        const AcdfTilePiece* piece) {
     const AcdfMixture* mix = &point->mix;
@@ -103,7 +103,7 @@ ACDF_INLINE float acdf_local_piece_pdf(const AcdfLocal* local, const AcdfLocalPo
                          1.0);
 }
 
-/* The density of a direction in a cell of probability p. */
+/* The pdf of a direction in a cell of probability p. */
 ACDF_INLINE float acdf_local_cell_pdf(const AcdfLocal* local, const AcdfGrid* grid, const float direction[3],
                                       const AcdfRange range[2], double p) {
     double t[2] = {0.5, 0.5}, position[2];
@@ -116,7 +116,7 @@ ACDF_INLINE float acdf_local_cell_pdf(const AcdfLocal* local, const AcdfGrid* gr
     return acdf_grid_pdf(grid, range, t, p);
 }
 
-/* The density of what rows of codes, or a tree, sample. */
+/* The pdf of what rows of codes, or a tree, sample. */
 ACDF_FN float acdf_local_spot_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
                                   const AcdfLocalSpot* spot) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -184,7 +184,7 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
     return acdf_local_spot_pdf(local, point, direction, &spot);
 }
 
-/* The part of the density that follows the light: that of rows, and of windows where a position sees any. */
+/* The part of the pdf that follows the light: that of rows, and of windows where a position sees any. */
 ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     const float row = acdf_local_row_pdf(local, point, direction);
     return point->visible_portals.count > 0 ? acdf_visible_portals_pdf(&point->visible_portals, direction, row)
@@ -227,7 +227,7 @@ ACDF_INLINE int acdf_local_only_fast(const AcdfLocal* local, const AcdfLocalPoin
     return point->what == ACDF_LOCAL_FAST && local->cosine_share == 0.0;
 }
 
-/* Density per steradian with which acdf_local_sample_at samples `direction` (unit). */
+/* Pdf per steradian with which acdf_local_sample_at samples `direction` (unit). */
 ACDF_FN float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     return acdf_local_only_fast(local, point) ? acdf_local_fast_pdf_at(local, point, direction)
                                               : acdf_local_any_pdf_at(local, point, direction);

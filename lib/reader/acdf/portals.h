@@ -207,7 +207,7 @@ ACDF_FN void acdf_visible_portals_at(const AcdfPortalTable* table, const AcdfVis
     if (!acdf_is_finite(out->weight)) out->count = 0;
 }
 
-/* Of the densities of visible_portals and row together. */
+/* Of the pdfs of visible_portals and row together. */
 ACDF_FN float acdf_visible_portals_mixed(const AcdfVisiblePortals* visible_portals, double of_portals,
                                          float of_row) {
     const double pdf = visible_portals->of_row * (double)of_row + (1.0 - visible_portals->of_row) * of_portals;
@@ -241,7 +241,7 @@ ACDF_FN double acdf_visible_portal_pdf(const AcdfPortalTable* table, const AcdfV
            (0.25 * (double)size * (double)size) * z / (slope * slope);
 }
 
-/* Density per steradian of row and visible_portals together; `row`: that of the row. */
+/* Pdf per steradian of row and visible_portals together; `row`: that of the row. */
 ACDF_OUTLINE_ON_CPU float acdf_visible_portals_pdf(const AcdfVisiblePortals* visible_portals,
                                                    const float direction[3], float row) {
     double d[3], size, sum = 0.0;

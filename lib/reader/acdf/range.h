@@ -8,10 +8,10 @@
 extern "C" {
 #endif
 
-/* The part of one axis that a cell covers, and the slope of the density across it. */
+/* The part of one axis that a cell covers, and the slope of the pdf across it. */
 typedef struct AcdfRange {
     uint32_t low, high; /* positions on the axis, low < high */
-    double tilt;        /* s: the density varies as 1 + s (2t - 1) for t in [0, 1] across the range */
+    double tilt;        /* s: the pdf varies as 1 + s (2t - 1) for t in [0, 1] across the range */
 } AcdfRange;
 
 /* The random numbers of one axis that lead into a cell: u_low + u_width * [0, 1]. */
@@ -19,7 +19,7 @@ typedef struct AcdfStratum {
     double low, width;
 } AcdfStratum;
 
-/* Where in [0, 1] a tilted density puts u: solves t + s (t^2 - t) = u without cancellation. */
+/* Where in [0, 1] a tilted pdf puts u: solves t + s (t^2 - t) = u without cancellation. */
 ACDF_FN double acdf_tilt_sample(double tilt, double u) {
     const double a = 1.0 - tilt;
     return tilt == 0.0 ? u : 2.0 * u / (a + sqrt(a * a + 4.0 * tilt * u));

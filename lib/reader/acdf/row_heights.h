@@ -1,6 +1,6 @@
 /* Grids in floats, where these are sure to tell what acdf/grid.h does: the square of a direction, and the
  * directions of cells, as acdf/cells.h samples them; on lat-long grids (acdf_row_...) by a table of the heights
- * between rows, and densities without trigonometry. Cells without tilts. */
+ * between rows, and pdfs without trigonometry. Cells without tilts. */
 #ifndef ACDF_ROW_HEIGHTS_H
 #define ACDF_ROW_HEIGHTS_H
 

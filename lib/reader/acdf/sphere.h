@@ -43,8 +43,8 @@ ACDF_FN double acdf_row_z(uint32_t row, uint32_t rows) {
     return (1.0 - 2.0 * (double)south) * (1.0 - 2.0 * s * s);
 }
 
-/* Density per steradian of a cell of probability p whose solid angle is `area` over `columns`; `shape` is the
- * product of its tilt densities. */
+/* Pdf per steradian of a cell of probability p whose solid angle is `area` over `columns`; `shape` is the
+ * product of its tilt pdfs. */
 ACDF_FN float acdf_area_pdf(double p, uint32_t columns, double area, double shape) {
     const double pdf = p * (double)columns / area * shape;
     if (pdf >= 3.402823466e38) return 3.402823466e38f;

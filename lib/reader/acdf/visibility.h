@@ -4,7 +4,7 @@
  * Positions and normals lie in the cells of a k-d tree. A cell has a row of bytes: how much of the bright tiles, of
  * the mixture as a whole and, at each split of tiles that counts in its region (a *column*), of its two parts
  * reaches it. Those *visibilities* multiply what rows of normals give to the two parts; the products are made to
- * add up to 1 again at each split, so that the density is exact whatever the bytes are. Near the border of two
+ * add up to 1 again at each split, so that the pdf is exact whatever the bytes are. Near the border of two
  * cells their visibilities are mixed, linearly, so that nothing jumps where at most four cells meet. */
 #ifndef ACDF_VISIBILITY_H
 #define ACDF_VISIBILITY_H

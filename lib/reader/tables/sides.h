@@ -143,7 +143,7 @@ public:
     double height(const Cell& cell) const;
     /// Bits of a key.
     std::uint32_t key_bits() const { return octahedral() ? ACDF_SQUARE_BITS : ACDF_DIRECTION_BITS; }
-    /// Density of a cell without tilts, sr^-1; 0 for a dark one.
+    /// The pdf of a cell without tilts, sr^-1; 0 for a dark one.
     float density(const Cell& cell) const;
     /// What the trigonometry of a border between rows gives.
     struct Row {

@@ -32,22 +32,22 @@ export interface Info {
     metadata: Record<string, string>;
 }
 
-/** Which of a file's densities is meant: of a local environment file by the normal, of a BRDF by the direction towards
+/** Which of a file's pdfs is meant: of a local environment file by the normal, of a BRDF by the direction towards
  * the viewer in the surface's frame; [0, 0, 1] where it is left out. */
 export interface At {
     normal?: ArrayLike<number>;
     view?: ArrayLike<number>;
 }
 
-/** An accepted file. Directions are unit vectors towards the light, right-handed, z up; densities in sr^-1. */
+/** An accepted file. Directions are unit vectors towards the light, right-handed, z up; pdfs in sr^-1. */
 export interface AcdfFile {
     readonly kind: Info["kind"];
     readonly info: Info;
     /** Samples for pairs of random numbers in [0, 1]: x y z pdf for each, 4 floats. Not of tables (pdf 0). */
     sample(u: ArrayLike<number>, at?: At): Float32Array;
-    /** Densities of directions, x y z each; 0 where no sample falls, for NaN and for directions of another length. */
+    /** Pdfs of directions, x y z each; 0 where no sample falls, for NaN and for directions of another length. */
     pdf(directions: ArrayLike<number>, at?: At): Float32Array;
-    /** Densities at the middles of the texels of a lat-long map, row by row from the top: phi = pi at the left. */
+    /** Pdfs at the middles of the texels of a lat-long map, row by row from the top: phi = pi at the left. */
     map(width: number, height: number, at?: At): Float32Array;
     /** Of an environment: first and last position on axis 0, then on axis 1, 4 numbers a cell. Empty of other kinds. */
     cells(): Uint32Array;

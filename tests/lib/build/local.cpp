@@ -192,7 +192,7 @@ TEST(LocalFiles, MeasuresWhatSamplesHave) {
     const Target& target = lit_probe();
     const std::vector<build::Normal> normals = build::random_normals(6);
     const std::vector<build::NormalAccuracy> measured = build::measure_normals(file, target, normals);
-    for (std::size_t i = 0; i < normals.size(); ++i) { // the slow way, one density at a time
+    for (std::size_t i = 0; i < normals.size(); ++i) { // the slow way, one pdf at a time
         double irradiance = 0.0, second = 0.0, above = 0.0;
         const double n[3] = {normals[i][0], normals[i][1], normals[i][2]};
         const Target parts = compress::empty_target(2 * target.columns, 2 * target.rows, ACDF_PARAM_LATLONG);
@@ -227,7 +227,7 @@ TEST(LocalFiles, TreesOfTheirOwnCoverAllNormalsOfABin) {
     }
 }
 
-// Linear densities: what is measured is what the reader tells at many points of each texel.
+// Linear pdfs: what is measured is what the reader tells at many points of each texel.
 TEST(LocalFiles, TiltedCurvesAreMeasured) {
     constexpr std::uint32_t kParts = 2; // of a quarter of a texel
     for (const double share : {0.0, 0.25}) {

@@ -1,4 +1,4 @@
-// Files that are made for an MIS partner: densities and samples agree, and are less noisy than files that are made
+// Files that are made for an MIS partner: pdfs and samples agree, and are less noisy than files that are made
 // to be used alone.
 #include "tests/lib/build/partner.h"
 #include "tests/inputs/sanitized.h"

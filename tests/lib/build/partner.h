@@ -180,8 +180,8 @@ inline void make(const Probe& probe, const Kind& kind, Made& out, std::uint64_t 
 
 inline double share_of(const builder::Partner& partner) { return partner.light / (partner.light + partner.other); }
 
-/// Weight over number of samples and density, of a sample that was sampled with `own` beside `other`, both
-/// densities times the share of their samples.
+/// Weight over number of samples and pdf, of a sample that was sampled with `own` beside `other`, both
+/// pdfs times the share of their samples.
 inline double weight(double own, double other, AcdfHeuristic heuristic) {
     return heuristic == ACDF_HEURISTIC_POWER ? own / (own * own + other * other) : 1.0 / (own + other);
 }

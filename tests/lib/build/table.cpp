@@ -69,7 +69,7 @@ Curve1D curve_of(const compress::Cascade& cascade, const input::NpyArray& array)
     return {knots.size() - 1, cost * cost / (mean * mean) - 1.0};
 }
 
-/// Relative variance of f/p over all boxes, with the density asked from the file at their centres.
+/// Relative variance of f/p over all boxes, with the pdf asked from the file at their centres.
 double brute_variance(const TableView& view, const std::uint32_t* index, const float* f, const ShapeVector& shape) {
     const std::size_t n = count_of(shape);
     double volume = 1.0, integral = 0.0, square = 0.0;

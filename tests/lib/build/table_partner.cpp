@@ -25,7 +25,7 @@ build::TableOptions beside(const input::NpyArray& other, AcdfHeuristic heuristic
     return options;
 }
 
-/// What a file samples of a bin, what its partner does, and f: densities at the middles of boxes, of one each.
+/// What a file samples of a bin, what its partner does, and f: pdfs at the middles of boxes, of one each.
 struct BesideOther {
     std::vector<double> f, p, b;
 
@@ -64,7 +64,7 @@ struct BesideOther {
             if (f[i] > 0.0) sum += f[i] * f[i] / (share * p[i] + (1.0 - share) * b[i]);
         return sum;
     }
-    /// With the density that is best in each box by the balance heuristic.
+    /// With the pdf that is best in each box by the balance heuristic.
     double least_variance(double share) const {
         const double ratio = share / (1.0 - share);
         double low = 1e-6, high = 1.0 / ratio;

@@ -1,5 +1,5 @@
 // What a byte buys on real probes: the figures that docs/method.md quotes, as bounds. Whole files, stored
-// uncompressed, metadata of the usual length included; variances by exact summation over the stored density.
+// uncompressed, metadata of the usual length included; variances by exact summation over the stored pdf.
 #include "tests/inputs/paths.h"
 
 #include "build/accuracy/environment.h"

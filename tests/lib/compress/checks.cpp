@@ -95,7 +95,7 @@ void check_cells(const CellMap& map, const Target& target) {
     EXPECT_NEAR(sum, 1.0, 1e-12);
 }
 
-/// Sums pdf x solid angle over texel centres. Exact for tilted densities too: those are linear in phi and in
+/// Sums pdf x solid angle over texel centres. Exact for tilted pdfs too: those are linear in phi and in
 /// z across a texel, so that the value at the centre is the mean.
 void check_integral(const EnvironmentView& view, const Target& target) {
     double sum = 0.0;
@@ -179,7 +179,7 @@ void expect_chi_square(const char* what, const std::vector<std::uint32_t>& obser
         << what << ": chi-square " << test.statistic << " with " << test.degrees << " degrees of freedom";
 }
 
-/// What a direction rounded to float (by less than 2^-22 radians) may change in a cell's tilted density.
+/// What a direction rounded to float (by less than 2^-22 radians) may change in a cell's tilted pdf.
 double rounding_bound(const Cell& cell, const Where& place, const Target& target) {
     if (cell.range[0].tilt == 0.0 && cell.range[1].tilt == 0.0) return 0.0;
     const auto z_of = [&](double row) { return std::cos(kPi * row / target.rows); };
@@ -211,7 +211,7 @@ struct Agreement {
         const double length = std::sqrt(double{d[0]} * d[0] + double{d[1]} * d[1] + double{d[2]} * d[2]);
         bad += !(std::abs(length - 1.0) < 1e-6) || !std::isfinite(sample.pdf) || !(sample.pdf > 0.0f);
         const double difference = std::abs(double{view.pdf(d)} / sample.pdf - 1.0);
-        far += !(difference <= bound + (bound > 0.0 ? 2e-7 : 0.0)); // 2e-7: densities are floats
+        far += !(difference <= bound + (bound > 0.0 ? 2e-7 : 0.0)); // 2e-7: pdfs are floats
         worst = std::max(worst, difference);
     }
 };
@@ -256,7 +256,7 @@ void check_samples(const EnvironmentView& view, const CellMap& map, const Target
 
     const double total = acdf::compress::integral(target);
     const double standard_error = std::sqrt(relative_variance / kSamples);
-    EXPECT_NEAR(estimate / total, 1.0, 5.0 * standard_error + 1e-6); // 1e-6: densities are floats
+    EXPECT_NEAR(estimate / total, 1.0, 5.0 * standard_error + 1e-6); // 1e-6: pdfs are floats
 }
 
 } // namespace

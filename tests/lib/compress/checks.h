@@ -19,7 +19,7 @@ struct NamedFit {
 std::vector<NamedFit> all_fits(std::uint32_t columns, std::uint32_t rows, std::uint32_t cells);
 
 /// Fits, stores, reads back and checks with EXPECT_: the file is accepted; no support violation; no cell
-/// without energy has probability; the density integrates to 1 within 1e-5, over cells and over texel centres;
+/// without energy has probability; the pdf integrates to 1 within 1e-5, over cells and over texel centres;
 /// sample().pdf equals pdf(direction), bit for bit where no tilt magnifies rounding; chi-square of samples over
 /// equal-area bins and over cells; the Monte Carlo estimate of the integral is within five of the standard errors
 /// that relative_variance predicts.

@@ -58,7 +58,7 @@ protected:
 
     double relative_variance() const { return acdf::build::measure_environment(file_, target()).relative_variance; }
 
-    /// Density at the middle of grid square (x, y).
+    /// The pdf at the middle of grid square (x, y).
     double pdf(std::uint32_t x, std::uint32_t y) const {
         float direction[3];
         acdf_test::direction_of(acdf_test::centre_phi(x_is_phi() ? x : y, kSize),
@@ -79,7 +79,7 @@ TEST_P(TwoLights, MarginalAloneNeedsOnlyABDE) {
 
 TEST_P(TwoLights, WithoutGradientTheConditionalIsWrongOverBD) {
     store_fit(paper(3, 0));
-    // Each light's column holds both heights with half the density: E[(f/p)^2] = 2.
+    // Each light's column holds both heights with half the pdf: E[(f/p)^2] = 2.
     EXPECT_NEAR(relative_variance(), 1.0, 1e-4);
     const double light = pdf(kB + 2, kLow[0] + 1), ghost = pdf(kB + 2, kHigh[0] + 1);
     EXPECT_GT(light, 0.0);

@@ -20,7 +20,7 @@ Target row_of(std::uint32_t columns, const std::function<double(std::uint32_t)>&
 }
 
 TEST(Scanline, ErrorOfSegmentsIsTheSumByHand) {
-    // Densities 0, 2, 1, 1 of mean 1: one segment is wrong by 1, 1, 0, 0; two by 1, 1, 0, 0; four by nothing.
+    // Pdfs 0, 2, 1, 1 of mean 1: one segment is wrong by 1, 1, 0, 0; two by 1, 1, 0, 0; four by nothing.
     const Scanline line(row_of(4, [](std::uint32_t c) { return c == 0 ? 0.0 : c == 1 ? 2.0 : 1.0; }), 0);
     EXPECT_NEAR(line.rms_error(line.fit(ACDF_FIT_UNIFORM, 1)), std::sqrt(0.5), 1e-12);
     EXPECT_NEAR(line.rms_error(line.fit(ACDF_FIT_UNIFORM, 2)), std::sqrt(0.5), 1e-12);

@@ -1,4 +1,4 @@
-// Densities of many directions, about as they are (acdf/product/brdf_about.h), beside those of the cells that they
+// Pdfs of many directions, about as they are (acdf/product/brdf_about.h), beside those of the cells that they
 // may be of.
 #include "tests/lib/batch/brdf.h"
 #include "tests/lib/reader/brdf_forms.h"
@@ -46,7 +46,7 @@ std::vector<double> taken_near(const AcdfBrdf& brdf, int axis, double position, 
     return out;
 }
 
-/// Whether a density is that of a cell near a direction: as near as floats tell half-vectors.
+/// Whether a pdf is that of a cell near a direction: as near as floats tell half-vectors.
 bool is_near(const AcdfBrdf& brdf, const AcdfBrdfView& view, const float wi[3], float pdf) {
     AcdfBrdfPosition place;
     double sign, half[3];

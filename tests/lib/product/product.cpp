@@ -1,4 +1,4 @@
-// acdf/product/product.h and acdf/product/cut.h on files and lobes of every kind: that the density is exactly that
+// acdf/product/product.h and acdf/product/cut.h on files and lobes of every kind: that the pdf is exactly that
 // of the samples, that it integrates to 1, and that nothing is left out.
 #include "tests/lib/product/product_points.h"
 #include "tests/lib/reader/load.h"
@@ -79,7 +79,7 @@ TEST(Product, PointsAreTheSameInAnyMemory) {
         const acdf::SurfaceFrame frame = acdf::surface_frame(random_normal(rng).v);
         const Vector wo = random_view(rng, frame);
         for (const Sampler& sampler : {Sampler(loaded.light().environment, lobe), Sampler(loaded.light(), lobe)}) {
-            std::vector<acdf::ProductSample> sampled[2]; // and densities, without directions
+            std::vector<acdf::ProductSample> sampled[2]; // and pdfs, without directions
             for (const int byte : {0, 1}) {
                 alignas(Sampler::Point) unsigned char memory[sizeof(Sampler::Point)];
                 std::memset(memory, byte, sizeof memory);
@@ -242,7 +242,7 @@ TEST(Product, NothingIsLeftOut) {
     });
 }
 
-// Where no light arrives the lobe's own sampler samples all: its samples count as 0, and the density is still
+// Where no light arrives the lobe's own sampler samples all: its samples count as 0, and the pdf is still
 // right.
 TEST(Product, HemispheresWithoutLightAreTheLobes) {
     LocalSpec spec = random_local(1, false);

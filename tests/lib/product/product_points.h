@@ -18,7 +18,7 @@ namespace acdf_test::products {
 
 constexpr std::uint32_t file_count = 64; // every fourth one of the fast shape
 
-// Small grids, so that densities can be summed over their squares.
+// Small grids, so that pdfs can be summed over their squares.
 inline RandomOptions small_grid(std::uint32_t seed) {
     RandomOptions options;
     options.columns = 17 + seed % 16;

@@ -27,7 +27,7 @@ protected:
     /// Half of them nearly along the surface: there directions may be nearly opposite.
     Direction some_wo(int i) { return at_angles(i % 2 ? std::exp(-16.0 * uniform()) : uniform()); }
 
-    /// What invert promises of a direction, and that it tells numbers where there is a density.
+    /// What invert promises of a direction, and that it tells numbers where there is a pdf.
     void expect_back(const Direction& wo, const Direction& wi) {
         double u[2];
         const float p = view_.pdf(wo.data(), wi.data());
@@ -47,7 +47,7 @@ protected:
         ASSERT_LE(off, 0x1p-20 / cosine + 0x1p-29 / std::max(sine, 0x1p-15)) << u[0] << " " << u[1];
         if (off > 0x1p-23) ++moved_;
         ++all_;
-        // The same cell, in which densities differ by what moving does.
+        // The same cell, in which pdfs differ by what moving does.
         const Halves there(wo.data(), back.direction);
         const double change = std::fabs(there.length * halves.dot / (there.dot * halves.length) - 1.0);
         ASSERT_NEAR(back.pdf, p, (1e-4 + change) * double(p)) << u[0] << " " << u[1];

@@ -1,4 +1,4 @@
-// Samples follow the density that goes with them.
+// Samples follow the pdf that goes with them.
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/reference.h"
 #include "tests/lib/reader/sampling.h"
@@ -67,7 +67,7 @@ TEST(EnvironmentView, samplesFollowTheDensity) {
             const double expected = samples * cell.p * half0 * half1;
             if (expected == 0.0) {
                 EXPECT_EQ(count[i], 0.0) << seed;
-            } // no sample where the density is 0
+            } // no sample where the pdf is 0
             pooled_count += count[i];
             pooled_expected += expected;
             if (pooled_expected < 5.0) continue;

@@ -45,7 +45,7 @@ inline void expect_same_pdf(const EnvironmentPair& pair, const float direction[3
     ASSERT_EQ(bits_of(fast), bits_of(plain)) << direction[0] << ' ' << direction[1] << ' ' << direction[2];
 }
 
-/// A sample, its density, and the densities of directions that rounding could make of it.
+/// A sample, its pdf, and the pdfs of directions that rounding could make of it.
 inline void expect_same_sample(const EnvironmentPair& pair, double u0, double u1) {
     const acdf::DirectionSample fast = pair.view().sample(u0, u1);
     const acdf::DirectionSample plain = pair.plain.environment().sample(u0, u1);

@@ -1,4 +1,4 @@
-// How nearly floats tell densities of a BRDF.
+// How nearly floats tell pdfs of a BRDF.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@ struct Halves {
         dot = std::fabs(dot);
         length = std::sqrt(length);
     }
-    /// What floats round of a density, of it.
+    /// What floats round of a pdf, of it.
     double rounded() const { return 1e-5 + 1e-6 * length / dot; }
     /// What rounding the directions changes of it.
     double moved() const { return 1e-6 / dot; }

@@ -1,4 +1,4 @@
-// The reader inlined into callers that round doubles to floats on the spot: views, normals and densities are those
+// The reader inlined into callers that round doubles to floats on the spot: views, normals and pdfs are those
 // of the floats. gcc 12 forgets such a rounding where nothing holds it (acdf_as_given).
 #include <acdf/brdf.h>
 #include <acdf/local.h>

@@ -105,7 +105,7 @@ TEST(FastShape, PdfOfASampleIsExact) {
     }
 }
 
-// Of each square of the grid: its density and its solid angle.
+// Of each square of the grid: its pdf and its solid angle.
 TEST(FastShape, IntegratesToOne) {
     for (const bool octahedral : {false, true})
         for (std::uint32_t seed = 0; seed < 24; ++seed) {

@@ -16,7 +16,7 @@ constexpr float kNormalsInside[][3] = {{1, 0, 0}, {0.6f, 0.3f, 0.4f}, {0.1f, -0.
 constexpr float kInside[][3] = {{0, 0, 1},       {2, -1, 1}, {2, 1.5f, 1}, {1.1f, 0.2f, 1},
                                 {0.9f, 0.6f, 2}, {3, 2, 4},  {3, 1, 1.5f}, {2.9f, -0.5f, 1.5f}};
 
-/// Rounding may carry what is sampled at the border of a square to the next one: the density is that of the
+/// Rounding may carry what is sampled at the border of a square to the next one: the pdf is that of the
 /// direction.
 TEST(Portals, SamplesHaveTheDensityThatIsFoundForThem) {
     float share = 0.0f;
@@ -77,7 +77,7 @@ struct Histogram {
     }
 };
 
-/// The density in bins of equal solid angle, by midpoints of 16 x 16 parts of each.
+/// The pdf in bins of equal solid angle, by midpoints of 16 x 16 parts of each.
 Histogram expected_of(const acdf::LocalEnvironmentView& view, const AcdfLocalPoint& point) {
     constexpr int parts = 16;
     Histogram out;
@@ -92,7 +92,7 @@ Histogram expected_of(const acdf::LocalEnvironmentView& view, const AcdfLocalPoi
     return out;
 }
 
-/// Chi square over bins of enough samples; the density integrates to 1.
+/// Chi square over bins of enough samples; the pdf integrates to 1.
 TEST(Portals, DirectionsFallWhereTheDensitySays) {
     const LoadedLocal loaded(windowed_local());
     std::mt19937_64 random(9);

@@ -16,7 +16,7 @@ struct RandomOptions {
     std::uint32_t columns = 64, rows = 32;
     int depth = 6;             ///< curves on a path, at most
     int segments = 6;          ///< of a curve, at most
-    bool tilts = true;         ///< linear densities
+    bool tilts = true;         ///< linear pdfs
     bool dark = true;          ///< segments of probability 0
     bool share = true;         ///< curves with several parents
     double end = 0.25;         ///< chance that a segment ends before `depth`

@@ -217,7 +217,7 @@ public:
         return i;
     }
 
-    /// Direction and density in s.cell.
+    /// Direction and pdf in s.cell.
     void place(Sample& s, const double (&u)[2]) const {
         const double t0 = solve(s.cell.tilt[0], u[0]), t1 = solve(s.cell.tilt[1], u[1]);
         const double beta = std::ldexp(1.0, -22), x0 = s.cell.low[0], x1 = s.cell.high[0];

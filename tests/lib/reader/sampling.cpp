@@ -213,7 +213,7 @@ TEST(EnvironmentView, pdfOfATiltedSampleAgrees) {
         std::mt19937_64 rng(seed);
         for (int n = 0; n < 1000; ++n) {
             const auto s = env->view.sample(uniform(rng), uniform(rng));
-            // Where a density falls to 2^-15 of its mean across a cell of one step of 1024, rounding moves it.
+            // Where a pdf falls to 2^-15 of its mean across a cell of one step of 1024, rounding moves it.
             ASSERT_NEAR(env->view.pdf(s.direction) / s.pdf, 1.0, 2e-2) << seed << ' ' << n;
         }
     }
@@ -350,7 +350,7 @@ TEST(EnvironmentView, isMonotoneWithinASegment) {
     }
 }
 
-// The mean of the density over each cell, times its solid angle, sums to one. A product of linear functions is
+// The mean of the pdf over each cell, times its solid angle, sums to one. A product of linear functions is
 // integrated exactly by two Gauss points an axis.
 TEST(EnvironmentView, integratesToOne) {
     for (std::uint32_t seed = 0; seed < tree_count; ++seed) {

@@ -1,4 +1,4 @@
-// Files of random trees, for the tests of samples and densities.
+// Files of random trees, for the tests of samples and pdfs.
 #pragma once
 
 #include "tests/inputs/directions.h"

@@ -119,7 +119,7 @@ TEST(TableView, OutOfRangeAndBadNumbersAreSafe) {
     }
 }
 
-// Bins are row-major over the indexed axes: each one's density sits in the step of its own number.
+// Bins are row-major over the indexed axes: each one's pdf sits in the step of its own number.
 // A coordinate decides, not its position, which rounding brings back to the end.
 TEST(TableView, CoordinatesNextToTheEndsAreOutside) {
     const compress::Cascade cascade = {{{0, {}, {1.0}, {}, {}}}, {0}};
@@ -161,7 +161,7 @@ TEST(TableView, BinsAreRowMajor) {
         }
 }
 
-/// Integral of the density over each grid box, by the midpoint or, with tilts, exactly: it is linear on each axis.
+/// Integral of the pdf over each grid box, by the midpoint or, with tilts, exactly: it is linear on each axis.
 std::vector<double> box_probabilities(const TableView& view, const std::vector<std::uint32_t>& shape) {
     std::vector<double> out;
     ShapeVector index(shape.size(), 0);

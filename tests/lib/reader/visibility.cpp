@@ -19,7 +19,7 @@ constexpr float kNormals[][3] = {{0, 0, 1}, {0.6f, 0, 0.8f}, {0.1f, -0.9f, 0.2f}
 constexpr float kPositions[][3] = {{0, 0, 1},       {2, -1, 1},      {2, 1.5f, 1},
                                    {1.1f, 0.2f, 1}, {0.9f, 0.6f, 2}, {3, 2, 4}};
 
-/// Eight columns and rows: the density is constant or linear across each square.
+/// Eight columns and rows: the pdf is constant or linear across each square.
 template <class Visit>
 void for_each_direction(const Visit& visit) {
     constexpr int steps = 128;
@@ -67,7 +67,7 @@ TEST(Visibility, SamplesHaveTheDensityThatIsFoundForThem) {
     }
 }
 
-/// The frequency of directions in octants against the integral of the density there.
+/// The frequency of directions in octants against the integral of the pdf there.
 TEST(Visibility, DirectionsFallWhereTheDensitySays) {
     for (const LocalSpec& spec : {visibility_local(), regional_local()}) {
         const LoadedLocal loaded(spec);

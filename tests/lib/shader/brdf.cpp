@@ -1,5 +1,5 @@
-// BRDFs for shaders beside the reader's: each sample has the density that both tell of its direction, samples are
-// the reader's, and so are densities, but for the rounding of floats and directions next to a border.
+// BRDFs for shaders beside the reader's: each sample has the pdf that both tell of its direction, samples are
+// the reader's, and so are pdfs, but for the rounding of floats and directions next to a border.
 #include "tests/lib/batch/brdf.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/brdf_forms.h"
@@ -36,7 +36,7 @@ public:
     double rounds(const float d[3]) const { return Halves(wo_, d).rounded(); }
     double moves(const float d[3]) const { return Halves(wo_, d).moved(); }
 
-    /// Whether the reader has this density for directions that floats hardly tell from these, or less and more of
+    /// Whether the reader has this pdf for directions that floats hardly tell from these, or less and more of
     /// it, a hundredth apart: next to the azimuth of a view the share of the other view is known to few digits.
     bool told_near(const float d[3], float pdf) const {
         bool less = false, more = false;

@@ -1,5 +1,5 @@
-// Walks for shaders beside the reader's: each sample has the density that both tell of its direction, samples are
-// the reader's, and so are densities, but for the rounding of floats and directions next to a border.
+// Walks for shaders beside the reader's: each sample has the pdf that both tell of its direction, samples are
+// the reader's, and so are pdfs, but for the rounding of floats and directions next to a border.
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/golden_files.h"
@@ -25,7 +25,7 @@ namespace {
 using namespace acdf_test;
 
 const std::uint32_t kStep = kSanitized ? 3 : 1; // from seed to seed
-// Of a density: what floats round on the way to a leaf; and of a light that hardly rises above the horizon.
+// Of a pdf: what floats round on the way to a leaf; and of a light that hardly rises above the horizon.
 constexpr double kNear = 1e-5, kRounded = 1e-3;
 
 using Vector = std::array<float, 3>;
@@ -61,7 +61,7 @@ public:
         const bool square = file_.tables.words()[ACDF_WALK_OCTAHEDRAL] != 0;
         return (square ? static_cast<float>(ACDF_OCTAHEDRAL_SPEED) : 1.0f) * 0x1p-20f;
     }
-    /// Whether a density is between those for normals that floats do not tell from this one: on an edge between
+    /// Whether a pdf is between those for normals that floats do not tell from this one: on an edge between
     /// bins they give a little to the next.
     bool told_of_near_normal(const float d[3], float pdf) const {
         if (!file_.local()) return false;
@@ -77,7 +77,7 @@ public:
         }
         return pdf >= least && pdf <= most;
     }
-    /// What is rounded of a density, sr^-1: cosines to the normal, and of a light that no more than touches the
+    /// What is rounded of a pdf, sr^-1: cosines to the normal, and of a light that no more than touches the
     /// horizon.
     double faint() const { return 2e-7 * cosine_share() + (shader_.bright_tiles > 0 ? 1e-6 : 1e-30); }
     double cosine_share() const { return double{shader_.cosine}; }
@@ -108,12 +108,12 @@ struct WalkCounted {
     }
 };
 
-// Whether densities are equal but for rounding.
+// Whether pdfs are equal but for rounding.
 bool nearly(const WalkPoint& point, double a, double b, double most = kRounded) {
     return std::fabs(a - b) <= most * std::max(a, b) + point.faint();
 }
 
-// Whether the reader has a density for a direction, or for one next to it: 2^-20 radians away, or as far as 2^-20
+// Whether the reader has a pdf for a direction, or for one next to it: 2^-20 radians away, or as far as 2^-20
 // of the side of the square is, or (next to a pole) turned about that by as much.
 bool told_near(const WalkPoint& point, const float d[3], float pdf) {
     if (nearly(point, pdf, point.read_pdf(d))) return true;

@@ -28,7 +28,7 @@ TEST(BatchGallery, ShowsEveryFileAndWhatFailed) {
         run_acdf({"batch", folder / "jobs.jsonl", "-o", folder / "out", "--gallery", "--kind", "env", "-q"});
     EXPECT_EQ(made.code, 1); // the last one fails
     const std::string page = read_text(folder / "out/gallery.html");
-    EXPECT_EQ(count(page, "<img "), 6u) << made.err; // source and density
+    EXPECT_EQ(count(page, "<img "), 6u) << made.err; // source and pdf
     EXPECT_EQ(count(page, "alt=\"source of "), 3u);
     EXPECT_EQ(count(page, "<figure>"), 4u);
     EXPECT_EQ(count(page, "data:image/png;base64,iVBORw0KGgo"), 6u);

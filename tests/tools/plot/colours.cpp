@@ -1,4 +1,4 @@
-// False colours: ordered as the densities are.
+// False colours: ordered as the pdfs are.
 #include "tools/plot/colour.h"
 
 #include <gtest/gtest.h>

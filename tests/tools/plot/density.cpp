@@ -1,4 +1,4 @@
-// Densities as images: every pixel is the density of the direction at its centre.
+// Pdfs as images: every pixel is the pdf of the direction at its centre.
 #include "tools/plot/density.h"
 
 #include "tests/tools/plot/files.h"

@@ -44,7 +44,7 @@ inline compress::FitOptions fit_options(AcdfFit fit, std::uint32_t column_segmen
     return options;
 }
 
-/// Noise of which a fifth is dark: some cells have density 0.
+/// Noise of which a fifth is dark: some cells have pdf 0.
 inline compress::Target dark_noise() { return acdf_test::noise_target(64, 32, 7, 1.5, 0.2); }
 
 /// Direction at the centre of pixel (x, y) of a lat-long image, from the formula.

@@ -1,4 +1,4 @@
-// The range of densities that colours stand for, and its ticks.
+// The range of pdfs that colours stand for, and its ticks.
 #include "tools/plot/range.h"
 
 #include <gtest/gtest.h>

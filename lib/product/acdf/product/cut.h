@@ -3,7 +3,7 @@
  * (acdf/product/product.h). One freestanding header over acdf/local.h, valid C99, C++17 and CUDA/HIP/SYCL, with the
  * same contract.
  *
- * Within a part the density is that of the local map, light times cosine; how much each part gets is up to whoever
+ * Within a part the pdf is that of the local map, light times cosine; how much each part gets is up to whoever
  * made the cut. A direction's part is found by the cut's own splits, then the map's walk goes on from there: what
  * the cut does first the map need not do again. */
 #ifndef ACDF_CUT_H
@@ -22,7 +22,7 @@ enum {
     ACDF_CUT_MAX_BRIGHT_TILES = 64
 };
 
-/* A box: what lies below a split or in a tile. What samples and densities read stands first. */
+/* A box: what lies below a split or in a tile. What samples and pdfs read stands first. */
 typedef struct AcdfCutPart {
     double numbers[2][2];               /* random numbers that sample it: from low to high of axis 0, of axis 1 */
     double weight[ACDF_MAX_ROWS_MIXED]; /* what each row gives to it */

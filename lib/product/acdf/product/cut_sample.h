@@ -1,4 +1,4 @@
-/* Sampling from a cut, and its density (acdf/product/cut.h). One freestanding header, valid C99, C++17 and
+/* Sampling from a cut, and its pdf (acdf/product/cut.h). One freestanding header, valid C99, C++17 and
  * CUDA/HIP/SYCL. */
 #ifndef ACDF_CUT_SAMPLE_H
 #define ACDF_CUT_SAMPLE_H
@@ -293,7 +293,7 @@ ACDF_FN const AcdfCutPart* acdf_cut_find(const AcdfCut* cut, const uint32_t* squ
     return &cut->part[~child];
 }
 
-/* Density per steradian with which acdf_cut_sample samples `direction` (unit); of cuts that are finished. */
+/* Pdf per steradian with which acdf_cut_sample samples `direction` (unit); of cuts that are finished. */
 ACDF_CALLED float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -318,7 +318,7 @@ ACDF_INLINE AcdfDirectionSample acdf_cut_direction_sample(const AcdfLocal* local
                                                           const AcdfCut* cut, const AcdfGrid* grid,
                                                           const AcdfRange range[2], const double u[2], double p) {
     AcdfDirectionSample out = acdf_local_direction_sample(local, point, grid, range, u, p);
-    /* A slope makes the density depend on where the rounded direction lies. */
+    /* A slope makes the pdf depend on where the rounded direction lies. */
     if (range[0].tilt != 0.0 || range[1].tilt != 0.0) out.pdf = acdf_cut_pdf(local, point, cut, out.direction);
     return out;
 }

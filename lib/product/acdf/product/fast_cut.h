@@ -4,7 +4,7 @@
  *
  * In groups that are not open, tiles get what the rows give to them, and in tiles cells what the file does: light
  * times cosine. Probabilities of bright tiles, groups and tiles are integers, as those of rows are: samples and
- * densities agree to the last bit. */
+ * pdfs agree to the last bit. */
 #ifndef ACDF_FAST_CUT_H
 #define ACDF_FAST_CUT_H
 
@@ -131,7 +131,7 @@ ACDF_FN void acdf_fast_cut_finish(AcdfFastCut* cut, const float* share) {
     cut->whole = cut->end[cut->count - 1];
 }
 
-/* ---- samples and densities ---------------------------------------------------------------------------- */
+/* ---- samples and pdfs ---------------------------------------------------------------------------- */
 
 /* The first of sixteen ends that is above x, which is below the last one. */
 ACDF_INLINE uint32_t acdf_fast_cut_search(const int32_t* end, double x) {
@@ -236,7 +236,7 @@ ACDF_INLINE uint32_t acdf_fast_cut_choose_part(const AcdfLocal* local, const Acd
     return acdf_fast_cut_sample_tile(point, cut, number - cut->bright_tiles, left, share);
 }
 
-/* Density per steradian with which acdf_fast_cut_sample samples `direction` (unit). */
+/* Pdf per steradian with which acdf_fast_cut_sample samples `direction` (unit). */
 ACDF_CALLED float acdf_fast_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
                                     const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);

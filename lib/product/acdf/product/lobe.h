@@ -75,7 +75,7 @@ public:
                              ProductSample* out) const noexcept {
         acdf_brdf_view_samples(vectors_, &data_, &point, u, count, out);
     }
-    /// About what `sample` samples, in less time, with the density there. Lobes need not have this.
+    /// About what `sample` samples, in less time, with the pdf there. Lobes need not have this.
     ACDF_METHOD ProductSample about(const Point& point, double u0, double u1) const noexcept {
         return acdf_brdf_view_about(&data_, &point, u0, u1);
     }
@@ -105,7 +105,7 @@ ACDF_METHOD ProductSample guide(const AnyLobe& lobe, const typename AnyLobe::Poi
     return lobe_about(lobe, point, (i + 0.5) / sampled, (reversed + 0.5) / 8.0, 0);
 }
 
-/// Densities of several directions: `pdfs` where it has that, else `pdf`.
+/// Pdfs of several directions: `pdfs` where it has that, else `pdf`.
 template <class AnyLobe>
 ACDF_METHOD auto lobe_pdfs(const AnyLobe& lobe, const typename AnyLobe::Point& point, const float (*wi)[3],
                            std::size_t count, float* out, int) noexcept
@@ -145,7 +145,7 @@ ACDF_METHOD void lobe_samples(const AnyLobe& lobe, const typename AnyLobe::Point
 }
 
 /// A renderer's own BRDF as a lobe. Callables over unit vectors in the surface's frame, wo above the surface:
-/// value(wo, wi): the BRDF up to a factor; sample(wo, u0, u1): a ProductSample; pdf(wo, wi): its density, which
+/// value(wo, wi): the BRDF up to a factor; sample(wo, u0, u1): a ProductSample; pdf(wo, wi): its pdf, which
 /// must be positive wherever the BRDF is, and should be about proportional to BRDF times cosine.
 template <class Value, class Sample, class Pdf>
 class Lobe {

@@ -28,7 +28,7 @@ struct LobeGuides {
         return upper & some;
     }
 
-    /// Sets what they weigh where the light has such densities.
+    /// Sets what they weigh where the light has such pdfs.
     ACDF_METHOD void weigh(const float* light) noexcept {
         for (int i = 0; i < count; ++i) {
             const double weight = double{light[i]} * double{value[i]} / double{pdf[i]};
@@ -62,7 +62,7 @@ struct PartRating {
     /// Mean and mass, from the heart, which stands for the whole part, and the guides in it: weighed as two
     /// samplers' samples are by the balance heuristic.
     ACDF_METHOD void rate(const LobeGuides& all) noexcept {
-        const float expected = solid_angle * static_cast<float>(all.sampled); // over the density: guides in it
+        const float expected = solid_angle * static_cast<float>(all.sampled); // over the pdf: guides in it
         const float own = 1.0f / (1.0f + expected * pdf);
         mean = own * value;
         mass = own * pdf;

@@ -2,7 +2,7 @@
 // (acdf/product/product.h): which share of the samples its bright tiles, groups of tiles and tiles get. C++17,
 // header only, freestanding.
 //
-// All bright tiles and groups that have much light are looked at at once, so that a lobe which tells many densities
+// All bright tiles and groups that have much light are looked at at once, so that a lobe which tells many pdfs
 // together does, and nothing waits for what was seen before. Then the groups that reflect most are opened: their
 // tiles are looked at. Numbers are of all parts, one after the other, without a branch: compilers take vectors.
 #pragma once

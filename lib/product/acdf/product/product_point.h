@@ -18,7 +18,7 @@ struct PointOfLobe {
     int parts; ///< about how many are wanted
     const AcdfProductVectors* vectors;
 
-    /// Beyond this the lobe's value and density are not told apart: no sum of products overflows.
+    /// Beyond this the lobe's value and pdf are not told apart: no sum of products overflows.
     static constexpr float most_value = 1e18f;
 
     ACDF_METHOD static float bounded(float x) noexcept { return x < most_value ? x > 0.0f ? x : 0.0f : most_value; }
@@ -34,8 +34,8 @@ struct PointOfLobe {
         for (int k = 0; k < 3; ++k) wi[k] *= scale;
     }
 
-    /// The lobe's value and density in directions above the surface, in its frame, at most `Most`: told(i, value,
-    /// density) of each. `many`: about those, as is worth while for more than a few.
+    /// The lobe's value and pdf in directions above the surface, in its frame, at most `Most`: told(i, value,
+    /// pdf) of each. `many`: about those, as is worth while for more than a few.
     template <std::size_t Most, class Told>
     ACDF_METHOD void look(int count, bool many, const float (*wi)[3], const Told& told) const noexcept {
         float pdf[Most];

@@ -199,7 +199,7 @@ ACDF_FN3(AcdfVector, acdf_tiles_direction, ACDF_TABLES, tables, AcdfTileCell, ce
         tables, cell, acdf_tiles_kept(part0 * width0, width0, columns * ACDF_TILES_INSIDE * 0.15915494f), part1);
 }
 
-/* ---- samples and densities ---------------------------------------------------------------------------- */
+/* ---- samples and pdfs ---------------------------------------------------------------------------- */
 
 /* 1: bright tiles and rows of grids serve a point. A compiler that knows the tables leaves them out where there are
  * none.
@@ -216,7 +216,7 @@ ACDF_FN4(ACDF_F32, acdf_tiles_given, ACDF_TABLES, tables, AcdfShaderPoint, here,
     return acdf_mixture_weight(here.mix) / here.sum * acdf_tiles_share(tables, here.mix, tile);
 }
 
-/* Density per steradian of a direction, of what follows the light. */
+/* Pdf per steradian of a direction, of what follows the light. */
 ACDF_FN3(ACDF_F32, acdf_tiles_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfUnit, d) {
     ACDF_LET(AcdfTileSpot, spot) = acdf_tiles_spot(tables, d);
     ACDF_LET(ACDF_U32, tile) = acdf_tiles_at(tables, spot);

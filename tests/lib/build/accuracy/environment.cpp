@@ -1,4 +1,4 @@
-// measure_environment against midpoint quadrature of the reader's own density.
+// measure_environment against midpoint quadrature of the reader's own pdf.
 #include "tests/lib/build/accuracy/random_cascade.h"
 
 #include "build/accuracy/environment.h"

@@ -1,5 +1,5 @@
 // Files of maps of every layout: what is printed of them is what a sum over the map's own texels gives, with the
-// map's own lookup and the reader's density, written here once more.
+// map's own lookup and the reader's pdf, written here once more.
 #include "build/probe/source_target.h"
 #include "build/accuracy/environment.h"
 #include "build/probe/cube.h"
@@ -180,7 +180,7 @@ void check(const Map& map, AcdfParameterization grid, AcdfFilter filter) {
     EXPECT_EQ(printed.support_violations, 0u);
     EXPECT_EQ(summed.lost, 0.0) << "light without density";
     EXPECT_NEAR(printed.total / summed.total, 1.0, 2e-3);
-    // 1e-6: densities are floats
+    // 1e-6: pdfs are floats
     EXPECT_NEAR(printed.relative_variance, summed.relative_variance, 0.01 * summed.relative_variance + 1e-6);
     // The largest weight may lie in a sliver that no point of the sum hits, but not above what is printed.
     EXPECT_LE(summed.max_weight, printed.max_weight * 1.02);

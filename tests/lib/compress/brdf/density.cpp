@@ -137,7 +137,7 @@ TEST_P(BrdfDensity, coversTheLightAndIntegratesTo1) {
     }
 }
 
-// Nearly opposite to this view lies a direction whose half-vector floats have at right angles to both: its density
+// Nearly opposite to this view lies a direction whose half-vector floats have at right angles to both: its pdf
 // has no bound.
 TEST(BrdfPdfs, areMeasuredNextToTheOppositeOfTheView) {
     const MadeBrdf& brdf = made(anisotropic);

@@ -102,7 +102,7 @@ TEST(FitCurveCdf, PutsKnotsWhereAPiecewiseConstantDensityJumps) {
 }
 
 TEST(FitCurvePdf, FollowsALinearDensityWithOneSegment) {
-    // The density 1 + s (2t - 1) with s = 0.5 on 64 equal steps.
+    // The pdf 1 + s (2t - 1) with s = 0.5 on 64 equal steps.
     Distribution d{{}, std::vector<double>(64, 1.0)};
     for (int i = 0; i < 64; ++i) d.mass.push_back(1.0 + 0.5 * (2.0 * (i + 0.5) / 64 - 1.0));
     const Curve curve = fit_curve_pdf(d, {8, 0.01});

@@ -1,4 +1,4 @@
-// The density of fitted local environment maps: what is sampled is what is told, and it covers the light.
+// The pdf of fitted local environment maps: what is sampled is what is told, and it covers the light.
 #include "tests/inputs/local_maps.h"
 #include "tests/inputs/sanitized.h"
 
@@ -213,7 +213,7 @@ TEST_P(Maps, LengthOfNormalsDoesNotMatter) {
     }
 }
 
-/// Samples fall into grid squares as often as the density says.
+/// Samples fall into grid squares as often as the pdf says.
 TEST_P(Maps, ChiSquare) {
     const std::uint32_t samples = std::uint32_t(repeated(20000));
     const std::vector<Normal> tried = normals(4, 10, 5);
@@ -293,7 +293,7 @@ TEST_P(Maps, CoverTheLight) {
 }
 
 /// The mean of f/p over samples is the irradiance: over all maps, of more than ten million of them. The standard
-/// error is that of the density where that is larger than of the samples, which may have missed what is rare and
+/// error is that of the pdf where that is larger than of the samples, which may have missed what is rare and
 /// large.
 TEST_P(FineMaps, EstimatesAreUnbiased) {
     const int normals = repeated(60), samples = 4500;

@@ -1,4 +1,4 @@
-// The fast shape of local environment maps: what fits of it must do. Its density is tested with that of other maps.
+// The fast shape of local environment maps: what fits of it must do. Its pdf is tested with that of other maps.
 #include "build/accuracy/local.h"
 #include "tests/inputs/local_maps.h"
 #include "tests/inputs/sanitized.h"

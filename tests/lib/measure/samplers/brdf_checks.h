@@ -1,5 +1,5 @@
-// What every sampler of reflected light must pass: chi-square against its density, its integral, and that the
-// density it reports is the one it evaluates.
+// What every sampler of reflected light must pass: chi-square against its pdf, its integral, and that the
+// pdf it reports is the one it evaluates.
 #pragma once
 
 #include "measure/samplers/brdf_samplers.h"
@@ -31,7 +31,7 @@ public:
         phi -= std::floor(phi);
         return std::min(int(t * rows), rows - 1) * columns + std::min(int(phi * columns), columns - 1);
     }
-    /// Integral of a density over each bin, by a midpoint sum whose squares lie inside bins; the last one is the
+    /// Integral of a pdf over each bin, by a midpoint sum whose squares lie inside bins; the last one is the
     /// rest.
     template <class Pdf>
     std::vector<double> integrate(const Pdf& pdf, int fine) const {

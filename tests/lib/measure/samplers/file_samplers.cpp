@@ -1,4 +1,4 @@
-// Files and tables of BRDFs as samplers of light at points: the same densities, in the frame of the world.
+// Files and tables of BRDFs as samplers of light at points: the same pdfs, in the frame of the world.
 #include "tests/inputs/brdf_files.h"
 #include "tests/inputs/local_maps.h"
 #include "tests/lib/measure/samplers/light_sampler_checks.h"

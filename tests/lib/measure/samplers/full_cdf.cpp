@@ -1,4 +1,4 @@
-// FullCdf, the baseline: samples, densities, and a variance of nothing.
+// FullCdf, the baseline: samples, pdfs, and a variance of nothing.
 #include "tests/inputs/synthetic.h"
 #include "tests/lib/compress/chi_square.h"
 

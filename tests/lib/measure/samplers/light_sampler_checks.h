@@ -1,4 +1,4 @@
-// What every sampler of incident light must pass at a point: the integral of its density, that samples report it,
+// What every sampler of incident light must pass at a point: the integral of its pdf, that samples report it,
 // and chi-square.
 #pragma once
 
@@ -65,12 +65,12 @@ struct SphereBins {
 
 struct SamplerCheck {
     int samples = 20000;
-    double tolerance = 1e-5;  ///< of the integral of the density, which bins sum up
-    double disagreeing = 0.0; ///< share of samples whose density may differ from pdf(): at borders of cells
+    double tolerance = 1e-5;  ///< of the integral of the pdf, which bins sum up
+    double disagreeing = 0.0; ///< share of samples whose pdf may differ from pdf(): at borders of cells
     double significance = sidak(0.01, 200);
 };
 
-/// What is sampled in vain has an outcome of its own: what the integral of the density lacks of 1.
+/// What is sampled in vain has an outcome of its own: what the integral of the pdf lacks of 1.
 inline void expect_samples_as_its_pdf(const acdf::measure::LightSampler& sampler,
                                       const acdf::measure::ShadingPoint& at, const SphereBins& bins,
                                       const std::string& name, const SamplerCheck& check = {},

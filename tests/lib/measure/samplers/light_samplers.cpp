@@ -1,4 +1,4 @@
-// Samplers of a probe's texels: that each samples by the density it tells, which is the one that it should have.
+// Samplers of a probe's texels: that each samples by the pdf it tells, which is the one that it should have.
 #include "tests/lib/measure/samplers/baselines.h"
 #include "tests/lib/measure/samplers/light_sampler_checks.h"
 
@@ -78,7 +78,7 @@ TEST_P(TexelSamplers, MeanOfSamplesIsTheSum) {
 INSTANTIATE_TEST_SUITE_P(Targets, TexelSamplers, ::testing::ValuesIn(irradiance_targets()),
                          [](const auto& i) { return i.param.name; });
 
-/// Densities at the centres of texels.
+/// Pdfs at the centres of texels.
 std::vector<double> densities(const LightSampler& sampler, const Target& t) {
     const auto point = sampler.point_sampler();
     std::vector<double> out(t.values.size());

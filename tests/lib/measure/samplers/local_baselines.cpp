@@ -1,4 +1,4 @@
-// Samplers of irradiance that know either the light or the surface: densities, samples, and their exact variance
+// Samplers of irradiance that know either the light or the surface: pdfs, samples, and their exact variance
 // against the variance of samples.
 #include "tests/lib/measure/samplers/baselines.h"
 

@@ -1,4 +1,4 @@
-// Samples of light times cosine times BRDF, of files that were fitted: their density, and what they estimate.
+// Samples of light times cosine times BRDF, of files that were fitted: their pdf, and what they estimate.
 #include "tests/inputs/brdf_files.h"
 #include "tests/inputs/local_maps.h"
 #include "tests/lib/measure/samplers/light_sampler_checks.h"

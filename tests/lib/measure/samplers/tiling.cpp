@@ -1,4 +1,4 @@
-// Tiling on the fly: that its bounds hold and are tight, its density is that of its samples, and its variance is
+// Tiling on the fly: that its bounds hold and are tight, its pdf is that of its samples, and its variance is
 // what samples show.
 #include "tests/lib/measure/samplers/baselines.h"
 

@@ -1,5 +1,5 @@
 // What rooms are lit by elsewhere: portals, and what can be seen of tiles at cache points. That each samples by the
-// density it tells, and finds all the light that reaches a point.
+// pdf it tells, and finds all the light that reaches a point.
 #include "tests/lib/measure/samplers/baselines.h"
 #include "tests/lib/measure/samplers/light_sampler_checks.h"
 

@@ -1,4 +1,4 @@
-// Runtime tables of local environments beside the walk that they stand for: the same density to the bit for every
+// Runtime tables of local environments beside the walk that they stand for: the same pdf to the bit for every
 // direction and normal, and the same samples but for rounding, on golden files, random ones, those that break their
 // luck, and a fitted one.
 #include "tests/inputs/local_maps.h"
@@ -46,14 +46,14 @@ void expect_same(const LocalPair& pair, const AcdfLocalPoint points[2], const fl
 }
 
 /// Whether two samples are of one cell and at one place but for the rounding of floats. (Where a share is sampled
-/// around the normal the density depends on the place.)
+/// around the normal the pdf depends on the place.)
 bool same_sample(const acdf::DirectionSample& a, const acdf::DirectionSample& b, double most) {
     for (int i = 0; i < 3; ++i)
         if (!(std::fabs(double{a.direction[i]} - b.direction[i]) <= most)) return false;
     return std::fabs(double{a.pdf} - b.pdf) <= 1e-5 * b.pdf;
 }
 
-/// A sample is the walk's but next to borders, where it is that of numbers 2^-24 away. Its density is what the same
+/// A sample is the walk's but next to borders, where it is that of numbers 2^-24 away. Its pdf is what the same
 /// view tells of it, where that holds of the walk: cells without tilts.
 void expect_same_sample(const LocalPair& pair, const AcdfLocalPoint points[2], const double u[2]) {
     const acdf::DirectionSample a = pair.fast.local().sample(points[0], u[0], u[1]);
@@ -70,7 +70,7 @@ void expect_same_sample(const LocalPair& pair, const AcdfLocalPoint points[2], c
     ASSERT_TRUE(near) << u[0] << ' ' << u[1] << ' ' << a.pdf;
 }
 
-/// Samples of a normal and their densities, directions anywhere, and such beside borders between squares.
+/// Samples of a normal and their pdfs, directions anywhere, and such beside borders between squares.
 void expect_same(const LocalPair& pair, const float normal[3], std::mt19937_64& random, LocalServed& served,
                  LocalServed& edges) {
     const AcdfLocalPoint points[2] = {pair.fast.local().at(normal), pair.plain.local().at(normal)};
