@@ -2,7 +2,7 @@
 # Whether a reader of an earlier revision reads files of this one: older_reader.sh REVISION [FILE.acdf...]
 # Builds the reader of that git revision (nothing but cmake, a compiler and zlib is needed) in a temporary folder and
 # opens the files, by default the golden ones of tests/. Exit code 1 where one is refused that this revision's rules
-# accept; files of kinds or with critical chunks that came later are told and do not count.
+# accept; files of kinds or with critical chunks that came later are listed and do not count.
 set -euo pipefail
 [ $# -ge 1 ] || { echo "usage: older_reader.sh REVISION [FILE.acdf...]" >&2; exit 2; }
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

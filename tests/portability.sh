@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# portability.sh: reader and builder for other systems, as far as one machine can tell. Not a part of tests/run.sh. The builder is
+# portability.sh: reader and builder for other systems, as far as one machine can test. Not a part of tests/run.sh. The builder is
 # compiled and no more: Debian has oneTBB's headers, but for no other system its library. Of Debian 12 it needs
 #   libtbb-dev                                  the builder
 #   g++-mingw-w64-x86-64 wine64                 Windows: cross-compiled, and run

@@ -144,12 +144,12 @@ void EnvConversion::check() {
     check_partner();
 }
 
-/// The options as they will be, but for what only the probe's file tells.
+/// The options as they will be, but for what only the probe's file holds.
 builder::EnvironmentOptions EnvConversion::with_source() const {
     builder::EnvironmentOptions options = environment_;
     options.source.reading = reading_text(input_);
     if (scene_.given()) {
-        options.normals = {{}}; // any: only the text tells which
+        options.normals = {{}}; // any: only the text names them
         options.normals_text = scene_.text();
     }
     return options;
@@ -196,7 +196,7 @@ std::uint64_t EnvConversion::memory_of_tree(std::uint64_t pixels) const {
     return std::min(cells * kMemoryOfCell, pixels * kMemoryOfEachPixel);
 }
 
-/// As far as its header and the options tell.
+/// As far as its header and the options show.
 bool EnvConversion::is_resampled(const input::ImageSize& size) const {
     const bool latlong = input_.projection == input::Projection::automatic
                              ? size.width == 2 * size.height

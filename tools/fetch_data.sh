@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fetches the probes and BRDFs that the figures in docs/ were made from, as far as your connection reaches them, and
-# checks each: tools/fetch_data.sh FOLDER. Lists what has to be fetched by hand. docs/data.md tells what they are.
+# checks each: tools/fetch_data.sh FOLDER. Lists what has to be fetched by hand. docs/data.md describes them.
 set -euo pipefail
 
 folder=${1:?usage: tools/fetch_data.sh FOLDER}

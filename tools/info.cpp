@@ -148,7 +148,7 @@ Json local_json(const File& file) {
                                                : std::to_string(local.columns) + "x" + std::to_string(local.rows);
     report["bins_stored"] = stored;
     report["tiles"] = local.blend.tiles ? local.blend.tiles->tile_count : 0;
-    if (is_fast(file)) report["shape"] = "fast"; // the usual one is not told
+    if (is_fast(file)) report["shape"] = "fast"; // the default is left out
     report["rows"] = local.blend.tiles ? local.blend.tiles->row_count : 0;
     report["bright_tiles"] = local.bright_tile_count;
     report["cosine_share"] = local.cosine_share;

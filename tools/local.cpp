@@ -157,7 +157,7 @@ std::string LocalConversion::scene_text() const {
 std::string LocalConversion::option_text() const {
     builder::LocalOptions told = local_;
     if (scene_.given()) {
-        told.normals = {{}}; // any: only the text tells which
+        told.normals = {{}}; // any: only the text names them
         told.normals_text = scene_text();
     }
     told.source.reading = reading_text(input_);

@@ -1,4 +1,4 @@
-// The `acdf` program: a table of subcommands, and the one place where errors become exit codes.
+// The `acdf` program: a table of subcommands, and the function where errors become exit codes.
 #include "tools/cli/help.h"
 #include "tools/cli/messages.h"
 #include "tools/cli/usage.h"

@@ -1,4 +1,4 @@
-// Pdfs of BrdfBatch over vectors, and of many directions for one view: tables tell the cell, whatever the
+// Pdfs of BrdfBatch over vectors, and of many directions for one view: tables give the cell, whatever the
 // view, and what each view gives to it. Internal linkage: see brdf_kernel.h.
 #pragma once
 

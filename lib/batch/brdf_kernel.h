@@ -32,7 +32,7 @@ ACDF_LANE Directions load(const float (*v)[3]) {
 
 ACDF_LANE Integer of_unit_length(Vector length2) { return length2 > 0.999 && length2 < 1.001; }
 
-/* acdf_brdf_view of isotropic files. Lanes of no view have the weights 0 and a place inside the tables. */
+/* acdf_brdf_view of isotropic files. Lanes of no view have the weights 0 and a position inside the tables. */
 struct View {
     Directions wo;
     Vector turn[2], weight[2];
@@ -72,7 +72,8 @@ ACDF_LANE void find_views(const BatchTable& t, const float (*wo)[3], View* out) 
     }
 }
 
-// ---- walks -----------------------------------------------------------------------------------------------------
+// ---- traversals
+// -----------------------------------------------------------------------------------------------------
 
 struct Walk {
     Vector x[2], weight[2], chosen;
@@ -197,7 +198,7 @@ ACDF_LANE void begin_walk(const BatchTable& t, const View& view, Vector u0, Vect
 
 constexpr std::size_t kBlock = kGroups * kWidth;
 
-/* A block of lanes whose cells are drawn. */
+/* A block of lanes whose cells are sampled. */
 struct Samples {
     View view[kGroups];
     Walk walked[kGroups];
@@ -294,7 +295,7 @@ ACDF_LANE unsigned reflect(const BatchTable& t, const View& view, const Cell& ce
     return bits(valid & ~good);
 }
 
-/* Samples of vectors of lanes that have walked to those cells; `one`: all of them have the first view. They take
+/* Samples of vectors of lanes that have reached those cells; `one`: all of them have the first view. They take
  * turns at each step. Returns the lanes that are left to acdf_brdf_sample. */
 template <int Groups>
 ACDF_LANE std::uint64_t end_samples(const BatchTable& t, const View* views, bool one, const Walk* walked,

@@ -1,5 +1,5 @@
-// Samples of one view of a BRDF file over vectors, by the file's own runtime tables: its rows are walked as
-// BrdfBatch walks its arrays. Internal linkage: see brdf_kernel.h.
+// Samples of one view of a BRDF file over vectors, by the file's own runtime tables: its rows are traversed as
+// BrdfBatch traverses its arrays. Internal linkage: see brdf_kernel.h.
 #pragma once
 
 #include "batch/brdf_density_kernel.h"

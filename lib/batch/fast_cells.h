@@ -14,7 +14,7 @@ struct FastCells {
     alignas(64) double u[2][kRoom], of[kRoom], all[kRoom];
     alignas(64) std::int32_t index[2][kRoom]; // of the cell in its line, and of that
     const AcdfTileRecord* tile[kRoom];
-    const std::uint8_t* list[kRoom]; // of the tile's lines; draws go on to that of a line
+    const std::uint8_t* list[kRoom]; // of the tile's lines; samples go on to that of a line
 };
 
 /* The grid of a lane's tile. */

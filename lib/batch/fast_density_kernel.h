@@ -1,4 +1,4 @@
-// Pdfs of LocalBatch in files of the fast shape over vectors, as fast_kernel.h draws.
+// Pdfs of LocalBatch in files of the fast shape over vectors, as fast_kernel.h samples.
 #pragma once
 
 #include "batch/fast_cells.h"
@@ -22,7 +22,7 @@ struct FastFinds : FastSquares, FastPointLanes {
     std::uint64_t lit = 0; // lanes whose tiles are bright tiles
 };
 
-/* acdf_tile_block_at of all squares: each level for all of them before the next. Returns the lanes that are told a
+/* acdf_tile_block_at of all squares: each level for all of them before the next. Returns the lanes that get a
  * split instead of a tile. */
 ACDF_LANE std::uint64_t find_tile_blocks(const AcdfLocal& local, std::size_t count, FastSquares* f) {
     const std::uint32_t* const words = acdf_local_words(local.tables);
@@ -105,8 +105,8 @@ ACDF_LANE void load_ends(const FastCells& c, std::size_t at, Ints ends[2]) {
     ends[1] = two_bytes_of([&](std::size_t i) { return ends_at(c.list[at + i], (std::uint32_t)line[i]); });
 }
 
-/* acdf_local_fast_find of a vector but for what the cell has of its tile. Its lanes whose tiles are bright tiles
- * are told. */
+/* acdf_local_fast_find of a vector but for what the cell has of its tile. Lanes whose tiles are bright tiles are
+ * returned. */
 ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
     Ints ends[kRows], around[kRows]; // of groups, and of tiles in theirs
     const std::int32_t* const tiles = f->tile + at;

@@ -1,4 +1,4 @@
-// Draws of LocalBatch in files of the fast shape over vectors: acdf/local_fast.h, operation by operation; see
+// Samples of LocalBatch in files of the fast shape over vectors: acdf/local_fast.h, operation by operation; see
 // local_kernel.h. All lanes of a block take a step before any takes the next one, and what that will read is asked
 // for before: so none waits for memory.
 #pragma once
@@ -16,10 +16,10 @@ namespace {
 
 // ---- tiles -----------------------------------------------------------------------------------------------------
 
-/// Draws of a block.
+/// Samples of a block.
 struct FastDraws : FastPointLanes {
     FastCells cells;
-    std::uint64_t lit, mixed; // lanes that draw bright tiles, and those that draw from the mixture
+    std::uint64_t lit, mixed; // lanes that sample bright tiles, and those that sample from the mixture
     alignas(64) double x[kRoom], before[kRoom];                    // of the mixture, or of bright tiles
     alignas(64) double step[kRoom];                                // AcdfLocalPoint::step
     alignas(64) long long upper[kRows][kRoom], is_lit[kRoom];      // is_lit: all ones, or 0
@@ -30,7 +30,7 @@ struct FastDraws : FastPointLanes {
     alignas(64) double group_mass[kRoom], group_below[kRoom], group_whole[kRoom];
 };
 
-/* Draws of points of a vector from a lane on. */
+/* Samples of points of a vector from a lane on. */
 ACDF_LANE void keep_draws(const FastPoints<true>& p, std::size_t at, FastDraws* d) {
     keep_points(p, at, d);
     stored(&d->step[at], p.step);
@@ -39,7 +39,7 @@ ACDF_LANE void keep_draws(const FastPoints<true>& p, std::size_t at, FastDraws* 
     for (int i = 0; i < kRows; ++i) stored(&d->upper[i][at], p.upper[i]);
 }
 
-/* Begins the lanes of a vector by their numbers: where they draw bright tiles, and else what they look for. */
+/* Begins the lanes of a vector by their numbers: where they sample bright tiles, and else what they look for. */
 ACDF_LANE void begin_draws(const Vector u[2], std::size_t at, FastDraws* d) {
     const Vector sum = loaded(&d->bright_tiles.sum[at]), bright_tiles = loaded(&d->bright_tiles.bright_tiles[at]);
     const Vector x = u[0] * sum, of_mixture = (x - bright_tiles) * loaded(&d->step[at]);
@@ -87,7 +87,7 @@ ACDF_LANE std::uint64_t draw_lights(const AcdfLocal& local, const At& at, FastDr
     return lost;
 }
 
-/* acdf_fast_group_of of all lanes that draw from the mixture. */
+/* acdf_fast_group_of of all lanes that sample from the mixture. */
 ACDF_LANE void search_groups(FastDraws* d) {
     FastLanes& w = d->rows;
     for (std::uint64_t left = d->mixed; left; left &= left - 1) {
@@ -130,7 +130,7 @@ ACDF_LANE void search_tiles(const AcdfLocal& local, FastDraws* d) {
     }
 }
 
-/* acdf_fast_sample_tile of all lanes; of those that draw a light it is told before. */
+/* acdf_fast_sample_tile of all lanes; of those that sample a bright tile it is known before. */
 ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* d) {
     alignas(64) double y[kRoom];
     search_groups(d);
@@ -218,7 +218,8 @@ ACDF_LANE Vector begin_directions(const AcdfLocal& local, const FastDraws& d, st
     return fast_density(local, c, ends, box, height, at);
 }
 
-/* The draws of lanes whose tiles are drawn, but for those of a mask and others that are left to single calls. */
+/* The samples of lanes whose tiles are sampled, but for those of a mask and others that are left to single calls.
+ */
 template <class Alone>
 ACDF_LANE void end_draws(const AcdfLocal& local, FastDraws* d, std::uint64_t lost, const Alone& alone,
                          std::size_t count, AcdfDirectionSample* out) {
@@ -240,7 +241,7 @@ ACDF_LANE void end_draws(const AcdfLocal& local, FastDraws* d, std::uint64_t los
     leave_alone(lost, count, alone);
 }
 
-/* Draws of up to kBlock lanes; `at` and `alone` as draw_block of local_kernel.h has them. */
+/* Samples of up to kBlock lanes; `at` and `alone` as draw_block of local_kernel.h has them. */
 template <class At, class Alone>
 ACDF_LANE void draw_fast_block(const AcdfLocal& local, const At& at, const Alone& alone, const double (*u)[2],
                                std::size_t count, AcdfDirectionSample* out) {

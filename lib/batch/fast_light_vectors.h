@@ -1,13 +1,14 @@
-// Lights that lanes draw in files of the fast shape: acdf_local_fast_bright_tile over vectors of such lanes, which
-// are packed behind each other, since few draws fall into bright tiles. Internal linkage: see local_kernel.h.
+// Bright tiles that lanes sample in files of the fast shape: acdf_local_fast_bright_tile over vectors of such
+// lanes, which are packed behind each other, since few samples fall into bright tiles. Internal linkage: see
+// local_kernel.h.
 #pragma once
 
 #include "batch/fast_vectors.h"
 
 namespace {
 
-/// Lanes that draw bright tiles by x of the sum of weights: the first light that takes that sum above x, its weight
-/// and the sum before it; weight 0 where there is none.
+/// Lanes that sample bright tiles by x of the sum of weights: the first bright tile that takes that sum above x,
+/// its weight and the sum before it; weight 0 where there is none.
 struct LightDraws {
     Vector x, weight = all(0.0), before = all(0.0);
     Integer number = {};

@@ -197,8 +197,8 @@ ACDF_LANE std::uint32_t end_at_least(const std::uint8_t* ends, std::int32_t leas
 
 // ---- shading points --------------------------------------------------------------------------------------------
 
-/// Points of the fast shape: what AcdfFastMixture and AcdfLocalPoint have of it, and addresses. Lights are those
-/// that LightLanes do not add.
+/// Points of the fast shape: what AcdfFastMixture and AcdfLocalPoint have of it, and addresses. Bright tiles are
+/// those that LightLanes do not add.
 template <bool Draws>
 struct FastPoints : Corners {
     static constexpr bool kEach = false;
@@ -277,7 +277,7 @@ struct FastPointLanes {
     FastLanes rows;
     LightLanes bright_tiles;
     alignas(64) double whole[kRoom];
-    alignas(64) long long facet[kRoom]; // of draws: in which byte of all it begins
+    alignas(64) long long facet[kRoom]; // of samples: in which byte of all it begins
 };
 
 /* Those of a vector from a lane on. */

@@ -17,7 +17,7 @@ constexpr std::size_t kBlock = 16, kSideBySide = 4;
 constexpr std::size_t kFewest = 6; // fewer wait for each other as long as single calls do
 constexpr int kRows = 3;           // of nearly all normals: those on edges of triangles have fewer
 
-/// Where a draw is, of those that are side by side.
+/// Where a sample is, of those that are side by side.
 struct Lane {
     std::size_t number;
     AcdfLocalPoint point;
@@ -30,7 +30,7 @@ bool usual(const AcdfLocal& local, const AcdfLocalPoint& point) {
            local.tables && local.blend.tiles->tile_count > 1;
 }
 
-/// Steps of the walks of some lanes until all are at a tile.
+/// Steps of the traversals of some lanes until all are at a tile.
 void walk(const AcdfLocal& local, Lane* lane, std::size_t count) {
     const u32* const words = acdf_local_words(local.tables);
     for (bool any = true; any;) {
@@ -106,7 +106,7 @@ void LocalBatch::sample(const float (*normals)[3], const double (*u)[2], std::si
     if (const LocalLoops* const loops = loops_of(local_, instructions_))
         return loops->sample(local_, normals, u, count, out);
 #endif
-    if (local_.fast.grid) { // nothing walks
+    if (local_.fast.grid) { // there is no traversal
         for (std::size_t i = 0; i < count; ++i) out[i] = alone::local_sample(local_, normals[i], u[i]);
         return;
     }

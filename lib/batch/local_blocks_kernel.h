@@ -48,7 +48,7 @@ ACDF_LANE void in_blocks(const PointsFrom& points, const Alone& alone, const In*
             std::min(count - first, Size), out + first);
 }
 
-/* Draws, by points of a type: of normals of their own, and at one point. */
+/* Samples, by points of a type: of normals of their own, and at one point. */
 template <class P, class Block>
 ACDF_LANE void draws_in_blocks(const AcdfLocal& local, const float (*normals)[3], const double (*u)[2],
                                std::size_t count, AcdfDirectionSample* out, const Block& block) {

@@ -14,7 +14,7 @@ namespace {
 
 // ---- squares ---------------------------------------------------------------------------------------------------
 
-/* The squares of kLanes directions, into the lanes from one on. Returns those of which floats do not tell. */
+/* The squares of kLanes directions, into the lanes from one on. Returns those that floats cannot decide. */
 ACDF_LANE std::uint32_t find_squares(const AcdfLocal& local, const float (*directions)[3], std::size_t first,
                                      Cells* cells) {
     const AcdfEnvironment& grid = local.environment;
@@ -65,7 +65,7 @@ ACDF_LANE void find_tiles(const AcdfLocalTables& tables, Cells* cells) {
         stored(&cells->tile[at], loaded(&cells->tile[at]) & 0x7FFF);
 }
 
-/* Squares and tiles of up to kBlock lanes. Returns those of which floats do not tell. */
+/* Squares and tiles of up to kBlock lanes. Returns those that floats cannot decide. */
 ACDF_LANE std::uint64_t find_all_squares(const AcdfLocal& local, const float (*directions)[3], std::size_t count,
                                          Cells* cells) {
     std::uint64_t lost = 0;

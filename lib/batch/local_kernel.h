@@ -1,11 +1,11 @@
-// Draws of LocalBatch over vectors of ACDF_WIDTH doubles, by the extensions of GCC and Clang. Included by one
+// Samples of LocalBatch over vectors of ACDF_WIDTH doubles, by the extensions of GCC and Clang. Included by one
 // source a set of instructions, compiled for it; nothing here may be inline with external linkage, lest the linker
 // picks code that the processor does not have.
 //
 // Each function is that of the same name in acdf/tile_tables.h, acdf/local.h and acdf/row_heights.h, a lane an
-// element, operation by operation: results agree bit for bit. Lanes are those of a block that draw from the
-// mixture, one after the other, and then those that draw a light. Normals on edges of triangles and draws next to
-// borders are left to the functions of acdf/local.h.
+// element, operation by operation: results agree bit for bit. Lanes are those of a block that sample from the
+// mixture, one after the other, and then those that sample a bright tile. Normals on edges of triangles and samples
+// next to borders are left to the functions of acdf/local.h.
 #pragma once
 
 #include "batch/local.h"
@@ -240,7 +240,7 @@ ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, 
 
 // ---- all of an array -------------------------------------------------------------------------------------------
 
-/* Draws of up to kBlock lanes; `at` as PointsOf; `alone(lane)` draws singly. */
+/* Samples of up to kBlock lanes; `at` as PointsOf; `alone(lane)` samples singly. */
 template <class Rows, class At, class Alone>
 ACDF_LANE void draw_block(const AcdfLocal& local, const Rows& rows, const At& at, const Alone& alone,
                           const double (*u)[2], std::size_t count, AcdfDirectionSample* out) {

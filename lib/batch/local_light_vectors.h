@@ -1,4 +1,4 @@
-// Lights of shading points that pdfs are told for, of a block of lanes. Those above the horizons of all
+// Bright tiles of shading points that pdfs are evaluated for, of a block of lanes. Those above the horizons of all
 // normals of a triangle are one sum (acdf/bright_tiles.h); the others few lanes have, which are packed behind each
 // other. Internal linkage: see local_kernel.h.
 #pragma once

@@ -20,8 +20,8 @@ struct PieceLanes {
     alignas(64) long long tile[kSearched];
 };
 
-/* acdf_keys_of_direction of all lanes, and the blocks that lead to their pieces. Returns the lanes of which floats
- * do not tell. */
+/* acdf_keys_of_direction of all lanes, and the blocks that lead to their pieces. Returns the lanes that floats
+ * cannot decide. */
 ACDF_LANE std::uint32_t find_places(const AcdfLocalTables& tables, const Search& s, const float (*directions)[3],
                                     PieceLanes* lanes) {
     std::uint32_t refused = 0;

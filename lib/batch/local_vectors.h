@@ -42,7 +42,7 @@ ACDF_LANE Mask less(Vector a, Vector b) { return _mm256_cmp_pd((__m256d)a, (__m2
 ACDF_LANE Mask equal(Integer a, Integer b) { return (Mask)_mm256_cmpeq_epi64((__m256i)a, (__m256i)b); }
 ACDF_LANE Mask without(Mask a, Mask b) { return _mm256_andnot_pd(b, a); }
 ACDF_LANE Mask has(Integer x, long long some) { return without(all_lanes(), equal(x & some, Integer{})); }
-ACDF_LANE Mask negative(Integer x) { return (Mask)x; } /* their highest bits tell */
+ACDF_LANE Mask negative(Integer x) { return (Mask)x; } /* by their highest bits */
 ACDF_LANE Integer widened(Signed x, int half) {
     return (Integer)_mm256_cvtepi32_epi64(half ? _mm256_extracti128_si256((__m256i)x, 1)
                                                : _mm256_castsi256_si128((__m256i)x));

@@ -66,13 +66,13 @@ ACDF_LANE void square_place(const Floats w[3], Floats* cap, Signed refused, Floa
     key[1] = whole(select(refused, Floats{}, least((1.0f + *cap) * ACDF_SQUARE_HALF, last)));
 }
 
-/* Lanes of whose directions floats do not tell. */
+/* Lanes whose directions floats cannot decide. */
 ACDF_LANE Signed are_not_directions(Floats sin2, Floats length2) {
     return ((Words)length2 - 0x3F7FF972u > 0x000009D4u) | ((Words)sin2 < 0x2B800000u);
 }
 
-/* acdf_keys_of_direction: local azimuth, or place across the square, cap or place along it, and keys. Returns the
- * lanes of which floats do not tell. */
+/* acdf_keys_of_direction: local azimuth, or position across the square, cap or position along it, and keys. Returns
+ * the lanes that floats cannot decide. */
 ACDF_LANE Signed direction_place(bool octahedral, const Floats w[3], Floats* along, Floats* cap, Words key[2]) {
     const Floats sin2 = w[0] * w[0] + w[1] * w[1], length2 = sin2 + w[2] * w[2];
     const Signed refused = are_not_directions(sin2, length2);

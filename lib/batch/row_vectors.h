@@ -30,7 +30,7 @@ ACDF_LANE Signed sure_step(Floats place, float border, Signed refused, Signed* s
     return (inside > border) & (inside < 1.0f - border);
 }
 
-/* acdf_row_square, or acdf_fold_square, of kLanes directions. Returns the lanes of which floats tell. */
+/* acdf_row_square, or acdf_fold_square, of kLanes directions. Returns the lanes that floats decide. */
 ACDF_LANE Signed squares_of(bool octahedral, std::uint32_t column_count, std::uint32_t row_count,
                             const float (*directions)[3], Signed square[2]) {
     const auto columns = (float)column_count, rows = (float)row_count;
@@ -60,10 +60,10 @@ ACDF_LANE Signed squares_of(bool octahedral, std::uint32_t column_count, std::ui
     return sure;
 }
 
-// ---- drawing ---------------------------------------------------------------------------------------------------
+// ---- sampling ---------------------------------------------------------------------------------------------------
 
-/// Halves of kLanes cells, and where in them directions are drawn: azimuth from the middle of a quarter and 1 -
-/// |z|, or the place across and along the octahedral square.
+/// Halves of kLanes cells, and where in them directions are sampled: azimuth from the middle of a quarter and 1 -
+/// |z|, or the position across and along the octahedral square.
 struct Drawn {
     Vector angle[2], cap[2];
     Longs quarter[2], south[2];

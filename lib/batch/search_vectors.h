@@ -72,7 +72,7 @@ ACDF_LANE std::uint32_t candidates_of(const Search& s, const Sought& sought, std
 }
 
 /* The first cell of each lane's block that may hold its point, or any where there is none, which `next` is given.
- * Returns the lanes that have none: what any cell tells of their places is told of other quarters, too. */
+ * Returns the lanes that have none: what any cell has for their positions applies to other quarters, too. */
 template <class Next>
 ACDF_LANE std::uint32_t find_cells(const Search& s, Sought* sought, const Next& next) {
     std::uint32_t gaps = 0, none = 0; // gaps: its highest bit

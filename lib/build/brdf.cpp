@@ -148,7 +148,7 @@ struct BrdfDraft {
 /// `goal`: before compression; what the file says of its options keeps that of the task. `max_weight`: 0 for that
 /// of the task.
 BrdfDraft draft(const Task& task, const compress::Goal& goal, double max_weight, const Progress& progress) {
-    BrdfFileOptions plain = task.options; // rows that are not made yet cannot tell how well they compress
+    BrdfFileOptions plain = task.options; // how well rows compress is unknown before they are made
     plain.codec = ACDF_CODEC_NONE;
     compress::BrdfOptions fit_options = task.options.fit;
     fit_options.goal = goal;

@@ -25,11 +25,11 @@ struct BrdfFileOptions {
     compress::ChannelWeights weights;
     float diffuse_share = 0.0f; ///< of a cosine lobe, in [0, 1)
     AcdfCodec codec = ACDF_CODEC_NONE;
-    /// Not told by the file: for callers who measure by themselves.
+    /// Not stored in the file: for callers who measure by themselves.
     std::uint32_t measured_views = kMeasuredViews;
 };
 
-/// All options that shape the file, in one spelling: what its `fit.options` tells.
+/// All options that shape the file, in one spelling: its metadata `fit.options`.
 std::string option_text(const BrdfFileOptions& options);
 
 struct BrdfFile {

@@ -56,7 +56,7 @@ compress::Target fitted_target(const compress::Target& target, const Environment
 void recommend(const std::vector<std::uint8_t>& bytes, const compress::Target& target,
                const EnvironmentOptions& options, compress::Description& description) {
     File file;
-    if (!File::from_memory(bytes.data(), bytes.size(), file).ok()) return; // told by measure_bytes
+    if (!File::from_memory(bytes.data(), bytes.size(), file).ok()) return; // measure_bytes reports it
     const double share = recommended_light_share(file, target, test_normals(options.scene, 64));
     description.chunks = {compress::partner_chunk(options.mis, static_cast<float>(share), {})};
 }

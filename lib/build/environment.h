@@ -40,7 +40,7 @@ struct Environment {
 /// Where a probe came from, for the metadata.
 using Source = builder::Source;
 
-/// All options that shape the file, in one spelling: what its `fit.options` tells.
+/// All options that shape the file, in one spelling: its metadata `fit.options`.
 std::string option_text(const std::string& reading, const EnvironmentOptions& options);
 
 /// Throws std::invalid_argument where the target has no energy, std::runtime_error where the goal is out of reach.

@@ -1,4 +1,4 @@
-// Why a file cannot be built, where std::invalid_argument and std::runtime_error do not tell.
+// Reasons why a file cannot be built, beside std::invalid_argument and std::runtime_error.
 #pragma once
 
 #include "compress/no_energy.h"

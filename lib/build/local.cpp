@@ -128,7 +128,7 @@ Budget budget_of(const LocalOptions& options, std::uint64_t all, compress::Whole
 
 std::uint64_t bytes_of(const LocalDraft& draft) { return compress::store(draft.tree, draft.description).size(); }
 
-/// Whether somebody hears which size would not be too small: it takes a fit to tell.
+/// Whether an error names the least size that would do: finding it takes a fit.
 enum class Least { told, unheard };
 
 /// A size is too small.

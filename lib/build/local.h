@@ -55,7 +55,7 @@ struct LocalOptions {
     compress::Partner mis; ///< of bins that share tiles
 };
 
-/// All options that shape the file, in one spelling: what its `fit.options` tells.
+/// All options that shape the file, in one spelling: its metadata `fit.options`.
 std::string option_text(const std::string& reading, const LocalOptions& options);
 
 /// Of that, which shape, where it was asked for.

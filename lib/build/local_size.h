@@ -8,7 +8,7 @@
 
 namespace acdf::build {
 
-/// Bins as options tell, of so many subdivisions if they tell none.
+/// Bins by the options; of so many subdivisions if those name none.
 compress::NormalBins bins_of(const LocalOptions& options, std::uint32_t subdivisions);
 
 /// Bins for a file of `bytes`. For the few normals of a scene they can be denser at the same cost.

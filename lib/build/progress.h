@@ -1,4 +1,4 @@
-// How long work tells how far it is.
+// The progress callback of long work.
 #pragma once
 
 #include <functional>

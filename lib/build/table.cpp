@@ -56,7 +56,7 @@ void check_options(const std::vector<std::uint32_t>& shape, const TableOptions& 
     }
 }
 
-/// What rules 5015 and 9004 ask of an axis: that its coordinates tell its steps apart.
+/// What rules 5015 and 9004 ask of an axis: that no two of its steps have the same coordinates.
 void check_range(const compress::AxisDescription& axis) {
     if (!std::isfinite(axis.low) || !std::isfinite(axis.high) || axis.low == axis.high)
         throw OptionError("the range of axis '" + axis.name + "' is empty or not finite");

@@ -1,4 +1,4 @@
-// Keeping a bound on weights that only a finished file can tell.
+// Keeping a bound on weights, which only a finished file shows.
 #pragma once
 
 #include <cstdio>

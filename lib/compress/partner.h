@@ -48,9 +48,9 @@ Left left_to_partner(double g, double threshold);
 /// A point of a hull, and how steeply it falls from there to the next; 0 for the last.
 struct HullPoint {
     double y, cost, slope;
-    std::size_t node; ///< its place among the costs
+    std::size_t node; ///< its index among the costs
 };
-/// The lower hull of costs at ascending y, as far as it falls. `out` has place for `count` points; returns how many
+/// The lower hull of costs at ascending y, as far as it falls. `out` has room for `count` points; returns how many
 /// there are.
 std::size_t falling_hull(const double* y, const double* cost, std::size_t count, HullPoint* out);
 

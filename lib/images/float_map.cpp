@@ -81,7 +81,7 @@ std::optional<Layout> take_layout(std::string_view& text) {
     return layout;
 }
 
-/// Numbers follow one blank, or a line's end as Windows writes it: which of them, the size of the file tells.
+/// Numbers follow one blank, or a line's end as Windows writes it: the size of the file shows which of them.
 /// OpenImageIO takes what follows the first blank for numbers.
 std::optional<Layout> parse(std::string_view beginning, std::uintmax_t bytes) {
     std::string_view rest = beginning;

@@ -26,7 +26,7 @@ bool ImageFile::open(const ImageReader& reader) {
 
 bool ImageFile::read(const Rows& rows, float* to) {
     if (reader_->read(image_.get(), rows, to, error_)) return true;
-    // What is wrong with a file, and whether it can be read all the same, OpenImageIO tells.
+    // OpenImageIO reports errors of a file, and whether it can be read all the same.
     const ImageReader& other = module().reader;
     if (reader_ == &other || !other.read) return false;
     return open(other) && reader_->read(image_.get(), rows, to, error_);

@@ -87,7 +87,7 @@ struct TextModule {
 /// is at ACDF_IMAGES_FOLDER from the running program's folder; a program that lies elsewhere defines
 /// acdf_images_folder (module.cpp). Throws std::runtime_error that names the file where it is missing, damaged or
 /// of another version. It exports, as extern "C", a function without arguments that returns a pointer to its table:
-/// acdf_images_module. Of a program that was built without OpenImageIO: all functions but `open`, which tells so,
+/// acdf_images_module. Of a program that was built without OpenImageIO: all functions but `open`, which reports it,
 /// are null.
 const ReaderModule& module();
 

@@ -5,7 +5,7 @@
 
 namespace acdf::input {
 
-/// What a file is that holds no image, by its first bytes, and which command takes it; empty where they tell
+/// The kind of a file that holds no image, by its first bytes, and which command takes it; empty where they show
 /// nothing.
 std::string kind_of_no_image(const std::string& path);
 

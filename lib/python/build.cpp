@@ -42,7 +42,7 @@ private:
     std::exception_ptr first_; // guarded by the interpreter's lock
 };
 
-/// Threads, and progress: told to Python where that asks, and whether the user has interrupted.
+/// Threads, and progress: reported to Python on request, with a check for interrupts of the user.
 Control control_of(const Options& options, Raised& raised) {
     Control control;
     options.take("threads", control.threads);

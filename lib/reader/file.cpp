@@ -68,7 +68,7 @@ fail(Status& status, int rule, const char* format, ...) {
     return false;
 }
 
-// Puts the path in front; of a long one the end, which tells files apart.
+// Puts the path in front; of a long one the end, which distinguishes files.
 void name_file(Status& status, const char* path) {
     constexpr std::size_t longest = 100;
     const std::size_t length = std::strlen(path);

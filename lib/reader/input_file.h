@@ -1,4 +1,4 @@
-// A regular file, opened to be read: the one place that asks the system.
+// A regular file, opened to be read: all calls to the system are here.
 #pragma once
 
 #include <cstdint>

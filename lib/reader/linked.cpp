@@ -22,7 +22,7 @@ void put(const DirectionSample& sample, std::size_t i, float* directions, float*
     pdfs[i] = sample.pdf;
 }
 
-// Calls serve(j, i) for each of `count` items i, of the place j that serves it.
+// Calls serve(j, i) for each of `count` items i, of the condition j that serves it.
 template <class Serve>
 void for_each_item(std::size_t count, std::size_t each, Serve&& serve) {
     for (std::size_t i = 0, j = 0; i < count; ++j)
@@ -40,7 +40,7 @@ void for_each_point(const AcdfLocal& local, const float* normals, std::size_t ea
     }
 }
 
-// Whether a file can serve arrays of this kind, with `each` items a place: 0 would never come to an end.
+// Whether a file can serve arrays of this kind, with `each` items a condition: 0 would never come to an end.
 bool serves(const AcdfFile* file, AcdfKind kind, size_t each) { return file->kind() == kind && each > 0; }
 
 void put_numbers(bool found, int axes, double* u) {

@@ -2,7 +2,7 @@
 file(READ ${HEAD} head)
 file(READ ${BODY} body)
 file(READ ${TAIL} tail)
-# What stands before the first function tells of the headers; the head takes its place.
+# The head replaces what stands before the first function.
 string(FIND "${body}" "/* ---- " begin)
 if(begin LESS 0)
     message(FATAL_ERROR "${BODY}: where functions begin is not to be found")

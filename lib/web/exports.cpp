@@ -96,8 +96,8 @@ struct Cells {
 ACDF_EXPORT void* acdf_web_allocate(std::size_t size) { return std::aligned_alloc(64, (size / 64 + 1) * 64); }
 ACDF_EXPORT void acdf_web_free(void* memory) { std::free(memory); }
 
-/// Checks `size` bytes from acdf_web_allocate, which now belong to what is returned. Null: no memory. What is
-/// returned tells by acdf_web_error whether the file is accepted; it is closed in either case.
+/// Checks `size` bytes from acdf_web_allocate, which now belong to what is returned. Null: no memory.
+/// acdf_web_error of the result says whether the file is accepted; it is closed in either case.
 ACDF_EXPORT Opened* acdf_web_open(void* bytes, std::size_t size) {
     void* place = std::malloc(sizeof(Opened));
     if (!place) {

@@ -4,7 +4,7 @@
 // Normals and views are random, one view in four grazing, one normal in four where bins of normals meet. Light is
 // what the file's environment says, the BRDF its own sampler's pdf over the cosine. Columns: pairs; how far the
 // pdf of the cut is from integrating to 1, by summation over the squares of the grid, for a few pairs; samples
-// whose pdf pdf() tells otherwise; samples and random directions with light and BRDF but without pdf; pairs
+// whose pdf differs from pdf(); samples and random directions with light and BRDF but without pdf; pairs
 // whose mean is farther than 4 standard errors, and 0.3 % for lobes that change within a square, from summation
 // over the squares of the light's grid.
 #include "measure/samplers/ggx_lobe.h"

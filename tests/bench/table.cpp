@@ -44,7 +44,7 @@ std::vector<float> numbers(const std::vector<std::uint32_t>& sides) {
 }
 
 /// Cumulative sums along the last axis, of their totals along the one before, and so on, all in floats: one search
-/// an axis samples, one load tells a pdf. Points are in units of cells.
+/// an axis samples, one load gives a pdf. Points are in units of cells.
 class FullTable {
 public:
     FullTable(const std::vector<float>& values, std::vector<std::uint32_t> sides)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# run.sh PYTHON PYTHON_PACKAGES: docs/examples/blender in headless Blender, whose Cycles draws a scene before and after. Ends
+# run.sh PYTHON PYTHON_PACKAGES: docs/examples/blender in headless Blender, whose Cycles renders a scene before and after. Ends
 # with 77 where there is no Blender (Debian's package `blender`), or its Python is not the one that acdf was built for.
 set -euo pipefail
 python=$1 packages=$2

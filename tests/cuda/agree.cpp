@@ -1,12 +1,12 @@
-// Whether a GPU samples what the processor samples, and tells the same pdfs.
+// Whether a GPU samples what the processor samples, and finds the same pdfs.
 //
 //   cuda_agree [--exact] COUNT FILE...            environments, local environments, BRDFs and tables
 //   cuda_agree [--exact] COUNT --product PARTS LOCAL BRDF
 //
-// A row of a table in Markdown for each file, by its runtime tables and walked: out of COUNT samples and as many
-// directions, those that are not the processor's to the bit, by how much they differ at most, and samples whose
-// pdf is another one when it is asked for. --exact: fails unless all are the same. Skips (77) where there is no
-// device.
+// A row of a table in Markdown for each file, by its runtime tables and by traversal: out of COUNT samples and as
+// many directions, those that are not the processor's to the bit, by how much they differ at most, and samples
+// whose pdf is another one when it is asked for. --exact: fails unless all are the same. Skips (77) where there is
+// no device.
 #include "device_answers.h"
 
 #include <algorithm>

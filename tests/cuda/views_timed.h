@@ -10,7 +10,7 @@ namespace acdf_cuda {
 Timed time_sample(const acdf::EnvironmentView& view, const Asked& asked);
 Timed time_pdf(const acdf::EnvironmentView& view, const Asked& asked);
 
-/// A shading point, and a draw, 16 draws or a pdf there.
+/// A shading point, and a sample, 16 samples or a pdf there.
 Timed time_sample(const acdf::LocalEnvironmentView& view, const Asked& asked);
 Timed time_samples(const acdf::LocalEnvironmentView& view, const Asked& asked);
 Timed time_pdf(const acdf::LocalEnvironmentView& view, const Asked& asked);
@@ -20,7 +20,7 @@ Timed time_sample(const acdf::BrdfView& view, const Asked& asked);
 Timed time_pdf(const acdf::BrdfView& view, const Asked& asked);
 
 #ifdef __CUDACC__
-/// Of all views and baselines that draw without a normal.
+/// Of all views and baselines that sample without a normal.
 template <class View>
 struct SampleOf {
     View view;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# guide.sh GUIDE BUILD ACDF CXX MAKE_SKY: does what docs/guide.md tells a reader to do, with its own words as source.
+# guide.sh GUIDE BUILD ACDF CXX MAKE_SKY: runs the commands of docs/guide.md, with its own words as source.
 set -euo pipefail
 guide=$1 build=$2 acdf=$3 cxx=$4 make_sky=$5
 work=$build/guide

@@ -1,4 +1,4 @@
-// Lights at the horizon of normals, normals on the seams of their bins, and hemispheres without any light.
+// Bright tiles at the horizon of normals, normals on the seams of their bins, and hemispheres without any light.
 #include "tests/extremes/targets.h"
 #include "tests/inputs/local_maps.h"
 

@@ -323,7 +323,7 @@ TEST(DeepTrees, AtDepth12EveryCellIsReachedAsOftenAsItShould) {
                 EXPECT_GT(pairs, 0u);
                 all += pairs;
                 ++cells;
-                // And the numbers that invert tells do lead back, with all bits of a double.
+                // And the numbers that invert returns do lead back, with all bits of a double.
                 float direction[3];
                 direction_of(kPi - 2.0 * kPi * (cell.range[0].low + 0.4) / env.columns,
                              std::cos(kPi * (cell.range[1].low + 0.4) / env.rows), direction);

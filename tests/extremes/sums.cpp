@@ -67,7 +67,7 @@ TEST(Summation, IntegralsAreThoseOfAnyOrder) {
     }
 }
 
-// What `measure` tells, by sums in extended precision over texels in a random order.
+// The figures of `measure`, by sums in extended precision over texels in a random order.
 TEST(Summation, AccuracyIsThatOfAnyOrder) {
     std::mt19937_64 random(7);
     for (const NamedTarget& t : all_targets()) {

@@ -93,7 +93,7 @@ def compare_direction_row(view, row, fail, where):
     *direction, pdf = view.sample(*given, *numbers(row, ["u0", "u1"]), **place)
     same = [float(np.float32(x)) for x in wanted_direction] == direction
     fail.check(all(map(is_near, direction, wanted_direction)), f"{where}: {direction}")
-    # A neighbouring float has another pdf where that varies fast: then it is found for the direction told.
+    # A neighbouring float has another pdf where that varies fast: then it is found for the direction given.
     fail.check(is_pdf(pdf if same or not isinstance(view, Brdf) else found, wanted), f"{where}: {pdf}")
     fail.check((found > 0) == (wanted > 0), f"{where}: found again {found}")
 

@@ -76,7 +76,7 @@ inline std::unique_ptr<MadeBrdf> make_brdf(std::unique_ptr<acdf::build::Brdf> so
     return out;
 }
 
-/// Options of files whose accuracy is told roughly: measuring 64 views takes longer than all else.
+/// Options of files whose accuracy is measured roughly: measuring 64 views takes longer than all else.
 inline acdf::build::BrdfFileOptions roughly_measured() {
     acdf::build::BrdfFileOptions options;
     options.measured_views = 8;

@@ -100,7 +100,7 @@ inline bool find_square(const acdf::compress::Target& target, const float direct
     return acdf_grid_square(&grid, direction, square, position) != 0;
 }
 
-/// The direction at a place in texels; a row's middle is that of its angles.
+/// The direction at a position in texels; a row's middle is that of its angles.
 inline Normal direction_at_position(const acdf::compress::Target& target, double column, double row) {
     Normal out;
     if (target.parameterization == ACDF_PARAM_OCTAHEDRAL) {

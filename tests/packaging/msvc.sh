@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # msvc.sh SOURCE: what the reader and the builder are compiled with where the compiler calls itself MSVC. No such compiler is
-# run: CMake is told that it has one, and the commands that it would run must not have flags that only others know.
+# run: CMake is made to believe that it has one, and the commands that it would run must not have flags that only others know.
 set -euo pipefail
 source=$(cd "$1" && pwd)
 work=$(mktemp -d)

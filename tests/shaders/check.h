@@ -10,7 +10,7 @@
 namespace acdf_test {
 
 /// Prints how nearly samples.bin and pdfs.bin of `folder` agree with the reader, and returns 0, or 1 where
-/// they do not. `ulps`: by how many steps of 2^-24 of it the pdf that a device tells of its own sample may
+/// they do not. `ulps`: by how many steps of 2^-24 of it the pdf that a device returns for its own sample may
 /// differ.
 int check(const acdf::File& file, std::size_t count, const std::string& folder, double ulps);
 

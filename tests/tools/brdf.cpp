@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-/// What is told when small_file() is made.
+/// The report when small_file() is made.
 std::string told;
 
 /// A small file of a model, made once.
@@ -85,7 +85,7 @@ TEST(BrdfCommand, measureComparesWithOtherSamplers) {
     EXPECT_LE(j.at("relative_variance_median"), j.at("relative_variance_worst"));
     EXPECT_GT(j.at("share_above_horizon").get<double>(), 0.98);
 
-    // One definition, one figure: what is told when a file is made, what it holds, and what is measured of it.
+    // One definition, one figure: the report when a file is made, the file's metadata, and the measurement agree.
     const Json made = Json::parse(told), held = Json::parse(run_acdf({"info", small_file(), "--json"}).out);
     for (const char* key : {"relative_variance", "relative_variance_median", "relative_variance_worst",
                             "rms_pdf_error", "kl_divergence", "max_weight", "share_above_horizon"}) {

@@ -276,7 +276,8 @@ TEST_F(Hostile, FilesForAllNormalsAdviseASceneOrTheMean) {
     EXPECT_FALSE(advised({}));
 }
 
-// A file is measured against any source, which is told; where it has no pdf for the light, that is an error.
+// A file is measured against any source, and another one is reported; where it has no pdf for the light, that is an
+// error.
 TEST_F(Hostile, ASourceThatAFileDoesNotStandForIsRefused) {
     const auto write = [&](const std::string& path, int bright, int height = 8) { // the only one
         std::ofstream out(path, std::ios::binary);
@@ -297,7 +298,8 @@ TEST_F(Hostile, ASourceThatAFileDoesNotStandForIsRefused) {
         EXPECT_EQ(run_acdf({"measure", file, "--against", here}).code, 0) << kind;
         const Result result = run_acdf({"measure", file, "--against", there, "-q", "--json"});
         EXPECT_EQ(result.code, 1) << kind;
-        EXPECT_GT(json::parse(result.out).at("support_violations").get<int>(), 0); // figures are told all the same
+        EXPECT_GT(json::parse(result.out).at("support_violations").get<int>(),
+                  0); // figures are printed all the same
         EXPECT_EQ(lines_in(result.err), 1u) << result.err;
         EXPECT_NE(result.err.find("does not stand for " + there), std::string::npos) << result.err;
     }

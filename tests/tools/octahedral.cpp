@@ -131,7 +131,7 @@ TEST_F(OctahedralCommand, LocalFilesLieOnItToo) {
     EXPECT_EQ(plot.code, 0) << plot.err;
 }
 
-// A projection that was told when a file was made is known, of baselines too.
+// A projection that was given when a file was made is stored in it; baselines use it, too.
 TEST_F(OctahedralCommand, LocalBaselinesOfOtherMapsNeedNoProjection) {
     const json report = made(disc, {"--projection", "angular", "--budget", "40kB"}, "local");
     const json told = measured(disc, {"--baselines"});

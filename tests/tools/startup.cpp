@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names of the shared libraries that a run of the program loads, as the dynamic linker tells them (ld.so(8)).
+/// Names of the shared libraries that a run of the program loads, as the dynamic linker lists them (ld.so(8)).
 std::set<std::string> loaded_by(const std::vector<std::string>& arguments) {
     const Folder folder;
     setenv("LD_DEBUG", "files", 1);
@@ -64,7 +64,7 @@ protected:
         write_rgb(image, 32, 16, rgb);
         write_rgb(exr, 32, 16, rgb);
     }
-    /// The program as it is installed, in another place.
+    /// The program as it is installed, in another folder.
     std::string copied_program() {
         fs::create_directories(folder / "moved/bin");
         fs::copy_file(acdf_test::kProgram, folder / "moved/bin/acdf");

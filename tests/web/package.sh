@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# package.sh BUILD ACDF MAKE_SKY GOLDEN: packs the npm package, installs the packed file into an empty project, and compares
-# what it tells there with the program.
+# package.sh BUILD ACDF MAKE_SKY GOLDEN: packs the npm package, installs the packed file into an empty project, and compares its results there with the program.
 set -euo pipefail
 build=$(cd "$1" && pwd) acdf=$2 make_sky=$3 golden=$4
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

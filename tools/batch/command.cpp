@@ -42,7 +42,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kErrorsShown = 50;
 
-/// Tells errors, a line for each kind of them, and throws where there are any.
+/// Prints errors, a line for each kind of them, and throws where there are any.
 void refuse(const std::vector<std::string>& errors) {
     if (errors.empty()) return;
     const std::vector<std::string> lines = grouped(errors);
@@ -315,7 +315,7 @@ int run(const BatchArguments& options) {
     check_usage(options);
     if (options.merge) return merge(options);
     const BatchLimits limits = limits_of(options);
-    shard_of(options); // wrong usage is told before files are looked at
+    shard_of(options); // wrong usage is reported before files are looked at
     input::text_sha256(
         "", "OpenSSL"); // sets itself up at the first call, and crashes if that is a thread without memory
     const BatchJobs jobs = all_jobs(options);

@@ -163,7 +163,7 @@ private:
     BatchJobs out_;
 };
 
-/// Adds the size of a file, or tells what is wrong with it.
+/// Adds the size of a file, or reports what is wrong with it.
 std::string add_bytes(const std::string& path, std::uint64_t& bytes) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
@@ -175,7 +175,7 @@ std::string add_bytes(const std::string& path, std::uint64_t& bytes) {
     return error ? path + ": " + error.message() : "";
 }
 
-/// Adds the size of the source, or tells what is wrong with it.
+/// Adds the size of the source, or reports what is wrong with it.
 std::string check_source(BatchJob& job) {
     if (find_non_utf8(job.source) != std::string::npos)
         return "the name of the source is not UTF-8, which files store it in; rename it";

@@ -23,7 +23,7 @@ inline constexpr JobKind job_kinds[] = {
 /// Null: there is none of this name.
 const JobKind* find_kind(std::string_view name);
 
-/// One line. What it does not tell is null or empty.
+/// One line. Members that it leaves out are null or empty.
 struct ManifestJob {
     std::size_t line = 0; ///< from 1
     std::string source;
@@ -42,7 +42,7 @@ struct Manifest {
     std::vector<ManifestError> errors; ///< at most one a line
 };
 
-/// Parses any bytes. Lines of white space alone are skipped. Checks all that the text alone tells: JSON, UTF-8,
+/// Parses any bytes. Lines of white space alone are skipped. Checks all that needs the text alone: JSON, UTF-8,
 /// keys, types; not names, options and files.
 Manifest parse_manifest(std::string_view text);
 

@@ -8,7 +8,7 @@
 namespace acdf::tools {
 
 /// Bytes that this process could still use: what the machine has available, or what its control group (of a
-/// container or a cluster's job) leaves it, whichever is less. 0 where neither can be told.
+/// container or a cluster's job) leaves it, whichever is less. 0 where neither is known.
 std::uint64_t available_memory();
 
 /// Lowers limits to the address space that `ulimit -v` leaves, less what threads reserve of it. oneTBB may wait for

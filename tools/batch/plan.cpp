@@ -103,7 +103,7 @@ void look_at(PlannedJob& planned, const std::string& folder, const PlanOptions& 
     const std::string path = (fs::path(folder) / job.output).string();
     const Conversion& conversion = conversions.of(job);
     planned.reason = "new";
-    std::error_code unknown; // told when it is written
+    std::error_code unknown; // reported when it is written
     if (fs::exists(path, unknown)) {
         planned.reason = "forced";
         if (!options.force) {

@@ -28,7 +28,7 @@ struct PlannedJob {
     std::string reason;             ///< "new", "up to date", "its options changed from --cells 4096", ...
     std::uint64_t memory = 0;       ///< that it needs, where it is due
     std::uint64_t bytes = 0;        ///< of the output, where it is not
-    double relative_variance = 0.0; ///< as the output tells it, where it is not due
+    double relative_variance = 0.0; ///< stored in the output, where it is not due
 };
 
 /// Checks the options of all jobs, each set of options once. Adds one line for each job whose options are wrong.
@@ -36,7 +36,7 @@ void check_options(BatchJobs& jobs, const MakeConversion& make);
 
 struct PlanOptions {
     bool force = false; ///< all are due, whatever there is
-    bool memory = true; ///< tell it of each job, which reads the headers of images
+    bool memory = true; ///< estimate it for each job, which reads the headers of images
 };
 
 /// Looks at sources and outputs, several at once. Adds a line to `errors` for each output in the way that is no

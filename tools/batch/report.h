@@ -17,7 +17,7 @@ struct JobResult {
     std::string input, output, kind;
     Status status = Status::failed;
     std::uint64_t bytes = 0;        ///< of the output; 0 where it failed
-    double relative_variance = 0.0; ///< as the output tells it
+    double relative_variance = 0.0; ///< stored in the output
     double seconds = 0.0;           ///< that the job took
     std::string error;              ///< one line; empty where it did not fail
     std::vector<std::string> notes; ///< what a user should know of the source

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 using Clock = std::chrono::steady_clock;
 
-/// Tells its own life time.
+/// Measures its own life time.
 struct Stopwatch {
     double& seconds;
     Clock::time_point start = Clock::now();
@@ -183,7 +183,7 @@ private:
         set(false);
     }
 
-    /// What is thrown here was thrown while there was no memory to tell it, or for a thread of the arena.
+    /// What is thrown here was thrown while there was no memory to report it, or for a thread of the arena.
     void run_in(tbb::task_arena& arena, std::size_t job) noexcept {
         JobResult& result = results_[job]; // this job's alone
         try {
@@ -220,7 +220,7 @@ private:
         };
     }
 
-    /// Where there is no memory to tell it now, the report does at the end.
+    /// Where there is no memory to report it now, the report at the end has it.
     void tell_end(std::size_t job) noexcept {
         try {
             if (watcher_) tell(job, 1.0, &results_[job]);

@@ -1,4 +1,4 @@
-// From what lib/build answers to how the program fails and tells how far it is.
+// Turns results of lib/build into failures of the program, and its progress into a progress bar.
 #pragma once
 
 #include "build/progress.h"
@@ -12,7 +12,7 @@
 
 namespace acdf::tools {
 
-/// Tells `progress`, and never cancels.
+/// Reports to `progress`, and never cancels.
 inline builder::Control told(const build::Progress& progress) {
     builder::Control control;
     if (progress)

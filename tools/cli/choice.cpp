@@ -5,7 +5,7 @@
 namespace acdf::tools {
 namespace {
 
-/// Known names are told in the order of the alphabet.
+/// Known names are listed in the order of the alphabet.
 std::string none_of(const std::string& text, std::vector<std::string> names) {
     std::sort(names.begin(), names.end());
     std::string known;

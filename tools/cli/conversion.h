@@ -19,7 +19,7 @@ namespace acdf::tools {
 
 struct Converted {
     std::vector<std::uint8_t> bytes; ///< the whole file
-    double relative_variance = 0.0;  ///< as the file itself tells it
+    double relative_variance = 0.0;  ///< stored in the file itself
     std::string report;              ///< for --json, an object: but for the name of the output
     std::string summary;             ///< a line for people: what stands behind the file's size
 };
@@ -50,10 +50,10 @@ public:
     /// The paths of all files that are read, `source` among them, for the caller to see and to change.
     virtual std::vector<std::string*> files() { return {&source}; }
 
-    /// What the file will tell as `fit.options`. Reads a scene to hash it. Throws input::Error.
+    /// The metadata `fit.options` that the file will have. Reads a scene to hash it. Throws input::Error.
     virtual std::string option_text() const = 0;
 
-    /// Bytes of memory that convert() needs, about, from the header of the source alone. 0 where it cannot be told,
+    /// Bytes of memory that convert() needs, about, from the header of the source alone. 0 where it is not known,
     /// as the source is missing or damaged.
     virtual std::uint64_t memory() const = 0;
 

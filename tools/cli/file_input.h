@@ -36,7 +36,7 @@ LoadedFile load_file(const std::string& path);
 /// Throws Failure where the bytes of a file just written are not accepted.
 void check_reads_back(const std::uint8_t* data, std::size_t size);
 
-/// Throws the Failure that tells that `command` reads `wanted`, not a file of this kind.
+/// Throws the Failure that says that `command` reads `wanted`, not a file of this kind.
 [[noreturn]] void fail_kind(const std::string& path, const File& file, const char* command, const char* wanted);
 
 /// As load_file, and fails where the file is no environment; `command` is named in the message.

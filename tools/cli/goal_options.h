@@ -48,7 +48,7 @@ inline void add_goal(CLI::App& command, std::uint32_t& cells, std::string& budge
         ->group(group);
 }
 
-/// --max-weight; `beyond` tells what holds for one kind alone.
+/// --max-weight; `beyond` adds to its help what holds for one kind alone.
 inline void add_max_weight(CLI::App& command, double& max_weight, const char* beyond = "") {
     command
         .add_option(

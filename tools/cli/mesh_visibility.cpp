@@ -72,7 +72,8 @@ std::shared_ptr<const input::MeshSurface> read_surface(const SceneOption& scene,
 builder::Visibility visibility_on(std::shared_ptr<const input::MeshSurface> surface, input::UpAxis up,
                                   bool volume) {
     builder::Visibility out;
-    const double lift = 1e-5 * surface->tree().size(); // floats are told: above what they were rounded to
+    const double lift =
+        1e-5 * surface->tree().size(); // positions are given as floats: above what they were rounded to
     std::optional<AirPoints> air;
     if (volume) air.emplace(surface->triangles());
     out.point = [surface, lift, air](std::uint64_t index, builder::VisibilityPoint& point) {

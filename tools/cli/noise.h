@@ -11,7 +11,7 @@
 
 namespace acdf::tools {
 
-/// Samples per pixel for which noise is told: a preview, a draft, a frame.
+/// Samples per pixel for which noise is reported: a preview, a draft, a frame.
 constexpr std::array<std::uint32_t, 3> kToldSamples = {16, 64, 256};
 
 /// Standard deviation of a pixel over its value, of `samples` independent samples of that relative variance each.

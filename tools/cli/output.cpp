@@ -44,7 +44,7 @@ void remove_and_die(int signal) {
 
 void handle_signals() {
     static const bool once = [] {
-        std::signal(SIGXFSZ, SIG_IGN); // a limit on file sizes is an error of write, told like a full disk
+        std::signal(SIGXFSZ, SIG_IGN); // a limit on file sizes is an error of write, reported like a full disk
         for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
             struct sigaction action = {};
             sigaction(signal, nullptr, &action);

@@ -1,4 +1,4 @@
-// Probes as the command line takes them: read, told of, and made into targets.
+// Probes as the command line takes them: read, reported, and made into targets.
 #pragma once
 
 #include "build/builder/sources.h"
@@ -25,7 +25,7 @@ builder::Target probe_texels(const std::string& path, const input::Probe& probe)
 /// Called with what a user should know of a source: one line without a file's name.
 using Note = std::function<void(const std::string&)>;
 
-/// Tells them on stderr, behind the name of a source, unless `quiet`.
+/// Prints them on stderr, behind the name of a source, unless `quiet`.
 Note notes_of(const std::string& path, bool quiet);
 
 /// A probe without its pixels, and what is fitted of it.
@@ -36,14 +36,14 @@ struct ProbeTarget {
     double error = 0.0;     ///< build::SourceTarget
 };
 
-/// Reads a probe, makes its target on the grid that `options.domain` (not that of `target_options`) tells, and
-/// tells what was assumed and what was mended. A lat-long probe on its own texels is read in bands of rows: memory
-/// holds the target, four bytes a texel for one channel with nearest lookup. Throws Error, and Failure where it has
-/// no energy.
+/// Reads a probe, makes its target on the grid that `options.domain` (not that of `target_options`) names, and
+/// reports what was assumed and what was mended. A lat-long probe on its own texels is read in bands of rows:
+/// memory holds the target, four bytes a texel for one channel with nearest lookup. Throws Error, and Failure where
+/// it has no energy.
 ProbeTarget load_target(const std::string& path, const input::ProbeOptions& options,
                         const builder::TargetOptions& target_options, const Note& note);
 
-/// Reads a probe, and tells the same on stderr unless `quiet`. Throws Error.
+/// Reads a probe, and reports the same on stderr unless `quiet`. Throws Error.
 input::Probe load_probe(const std::string& path, const input::ProbeOptions& options, bool quiet);
 
 /// What a file says of channels, filter and wrap.
@@ -51,7 +51,7 @@ builder::TargetOptions stored_options(const File& file);
 
 /// What a renderer that looks `source` up integrates, on the grid of a file: what that says of channels and filter.
 /// The source may have any layout and resolution; the projection or the faces that the file was made with need not
-/// be given again where this is its very source. `filter`: of another lookup than the file was made for. Tells on
+/// be given again where this is its very source. `filter`: of another lookup than the file was made for. Reports on
 /// stderr, unless `quiet`, where it is another file than the file was made from.
 ProbeTarget source_target(const std::string& path, const File& file, const std::string& source,
                           const input::ProbeOptions& options, bool quiet, std::optional<AcdfFilter> filter = {});

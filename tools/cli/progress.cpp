@@ -49,7 +49,7 @@ struct ProgressBar::State {
 
     void report(double fraction, const char* what) {
         const std::unique_lock lock(mutex, std::try_to_lock);
-        if (!lock) return; // another thread is drawing: nobody waits for a progress bar
+        if (!lock) return; // another thread prints it: nobody waits for a progress bar
         furthest = std::max(furthest, std::clamp(fraction, 0.0, 1.0));
         const Clock::time_point now = Clock::now();
         if (now - start < patience || now - drawn < redraw_interval) return;

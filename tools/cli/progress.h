@@ -8,11 +8,11 @@
 
 namespace acdf::tools {
 
-/// ", 12 s left", from how much is done after `elapsed` seconds; empty where that tells nothing yet.
+/// ", 12 s left", from how much is done after `elapsed` seconds; empty while that is not known yet.
 std::string time_left(double fraction, double elapsed);
 
-/// Draws on stderr, from the second second on, where that is a terminal; does nothing elsewhere or where `quiet`.
-/// It tells how long the rest will take, never runs backwards, and is wiped when the object ends.
+/// Shows progress on stderr, from the second second on, where that is a terminal; does nothing elsewhere or where
+/// `quiet`. It prints how long the rest will take, never runs backwards, and is wiped when the object ends.
 class ProgressBar {
 public:
     explicit ProgressBar(bool quiet);

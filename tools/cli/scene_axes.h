@@ -1,4 +1,4 @@
-// The axes that a scene is told in: --scene-axes.
+// The axes of a scene's coordinates: --scene-axes.
 #pragma once
 
 #include "input/mesh/triangles.h"
@@ -30,7 +30,7 @@ struct SceneAxes {
     }
     /// All corners; triangles stay wound as their normals are.
     void turn(input::Triangles& triangles) const;
-    /// Positions are told in the scene's axes.
+    /// Positions are given in the scene's axes.
     void tell(builder::Visibility& visibility) const;
 };
 

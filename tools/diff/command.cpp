@@ -43,7 +43,7 @@ Metadata metadata_of(const File& file) {
     return out;
 }
 
-/// What two files tell of themselves where that differs: by key, what each has (empty: nothing).
+/// Descriptions of two files where they differ: by key, what each has (empty: nothing).
 std::map<std::string, std::pair<std::string, std::string>> told_differently(const File& a, const File& b) {
     std::map<std::string, std::pair<std::string, std::string>> all;
     for (auto& [key, value] : metadata_of(a)) all[key].first = value;

@@ -18,7 +18,7 @@ using measure::operator+;
 using measure::operator-;
 using measure::operator*;
 
-/// Of a cell, told by where its row lies: hues far apart for neighbours.
+/// The colour of a cell, by where its row lies: hues far apart for neighbours.
 Colour cell_colour(const AcdfVisibilityTable& table, const std::uint8_t* row) {
     const auto number = static_cast<double>(row - table.rows);
     const double hue = 6.0 * std::fmod(number * 0.6180339887498949, 1.0),

@@ -72,7 +72,7 @@ std::string joined(const std::vector<std::string>& parts) {
 /// The numbers of a plot, before they become a picture.
 struct Drawing {
     DensityImage image;
-    std::vector<float> knots;   // opacity; empty where none are drawn
+    std::vector<float> knots;   // opacity; empty where none are shown
     std::vector<float> horizon; // the same
 };
 
@@ -108,7 +108,7 @@ images::Picture coloured(const Drawing& drawing, const DensityRange& range) {
     return picture;
 }
 
-/// One drawing, or one for each of panel_normals.
+/// One picture, or one for each of panel_normals.
 std::vector<Drawing> draw_all(const PlotArguments& options, const Plotted& source) {
     const bool with_knots = options.knots && !source.stored.file.empty();
     std::vector<Drawing> out;

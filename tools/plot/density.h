@@ -46,7 +46,7 @@ struct DensityImage {
     }
 };
 
-/// A map as wide as told: lat-long (half as high) or angular (square).
+/// A map of that width: lat-long (half as high) or angular (square).
 PlotMap plot_map(build::Layout layout, int width);
 
 /// The hemisphere above a surface on a disc, seen from its normal: x to the right, y up, areas as they are

@@ -12,7 +12,7 @@ namespace {
 
 constexpr Colour line_colour = {1.0f, 1.0f, 1.0f}, text_colour = {0.12f, 0.12f, 0.12f};
 
-/// Draws over a disc whose top left lies at (margin, margin).
+/// Paints over a disc whose top left lies at (margin, margin).
 class HemisphereAxes {
 public:
     HemisphereAxes(images::Picture& picture, int margin, const std::string& font)
@@ -62,7 +62,7 @@ private:
         float* pixel = picture_.at(column, row);
         for (std::size_t c = 0; c < 3; ++c) pixel[c] += opacity * (line_colour[c] - pixel[c]);
     }
-    /// Text around a place.
+    /// Text around a position.
     void write(double x, double y, const char* text, const Colour& colour) const {
         int column, row, width = 0;
         if (font_.empty() || !images::text_module().width(text, size_, font_, width)) return;

@@ -70,7 +70,7 @@ private:
     bool is_square() const { return grid_.layout == build::Layout::octahedral; }
 
     // Change of the position on `axis` between two points; columns of lat-long grids are periodic. Across a side of
-    // the square the position jumps to the other half: no pixel there tells how far it moves.
+    // the square the position jumps to the other half: no pixel there shows how far it moves.
     double difference(const GridPoint& a, const GridPoint& b, std::size_t axis) const {
         const double d = b.at[axis] - a.at[axis];
         if (is_square()) return std::abs(d) < 0.25 * resolution(axis) ? d : 0.0;

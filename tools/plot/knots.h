@@ -1,4 +1,4 @@
-// The borders of cells, drawn over a plot.
+// The borders of cells, shown over a plot.
 #pragma once
 
 #include "build/probe/projection.h"

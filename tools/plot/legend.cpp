@@ -13,7 +13,7 @@ namespace {
 
 constexpr Colour ink = {0.12f, 0.12f, 0.12f};
 
-// Text is drawn in ASCII.
+// Text is in ASCII.
 std::string to_ascii(const std::string& utf8) {
     std::string out;
     for (const char c : utf8) {
@@ -39,7 +39,7 @@ public:
         return x + width(text, size);
     }
 
-    /// base^exponent. The exponent is drawn small and high, since there are no superscripts in ASCII.
+    /// base^exponent. The exponent is small and high, since there are no superscripts in ASCII.
     void write_power(int x, int y, const std::string& base, int exponent, int size) const {
         const int end = write(x, y, base, size);
         const int small = std::max(size * 3 / 4, 8);

@@ -22,7 +22,7 @@ struct LegendLayout {
     Box zero;            ///< swatch of pdf 0, below the bar
     int tick_length = 0; ///< to the right of the bar
 
-    /// The row in which a pdf's tick is drawn.
+    /// The row of a pdf's tick.
     int row_of(double density, const DensityRange& range) const;
 };
 
@@ -36,7 +36,7 @@ struct Legend {
     ColourMap colours = ColourMap::rainbow;
 };
 
-/// The path of a font that text can be drawn with; empty where the system has none.
+/// The path of a font for the text; empty where the system has none.
 std::string find_font();
 
 /// `picture` (RGB floats as displayed) with a title and a colour bar: a tick at each power of ten, small ticks

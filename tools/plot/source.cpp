@@ -66,7 +66,7 @@ void load_brdf(const PlotArguments& options, Plotted& source) {
                     build::fit_name(file.description().fit) + " fit", to_readable_size(file.size())};
 }
 
-/// The accuracy that a file tells of itself, for a title.
+/// The accuracy that is stored in a file, for a title.
 void add_variance(const File& file, std::vector<std::string>& title) {
     const Text variance = file.metadata("accuracy.relative_variance");
     const std::string text(variance.data ? variance.data : "", variance.size);

@@ -43,7 +43,7 @@ struct Plotted {
     std::vector<std::string> title;
 };
 
-/// Whether the picture is one of numbers. Throws CLI::ValidationError where the name tells neither.
+/// Whether the picture is one of numbers. Throws CLI::ValidationError where the name shows neither.
 bool is_exr(const std::string& path);
 
 /// Reads what `options` name. Throws Failure, and CLI::ValidationError where an option is for another kind of file.

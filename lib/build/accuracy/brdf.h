@@ -40,10 +40,10 @@ std::vector<compress::View> random_views(std::uint32_t count, bool isotropic, do
 
 /// Sums over a grid of half-vectors, rows x columns, finer than any fit sees and not aligned with it, and over the
 /// same grid the part of samples that falls below the horizon: no samples are taken. The pdf is taken to
-/// integrate to 1, and counts as if it did over the grid, too: what the grid misses of a narrow lobe would else be
-/// told as variance or as the lack of it.
+/// integrate to 1, and counts as if it did over the grid, too: what the grid misses of a narrow lobe would
+/// otherwise be reported as variance or as its absence.
 ///
-/// The defaults are the one grid of all figures that are told: of those in files, of `acdf brdf`, `measure` and
+/// The defaults are the one grid of all figures that are reported: of those in files, of `acdf brdf`, `measure` and
 /// `sweep`.
 std::vector<ViewAccuracy> measure_views(const ViewPdf& density, const compress::Reflected& reflected,
                                         const std::vector<compress::View>& views, std::uint32_t columns = 251,

@@ -1,4 +1,4 @@
-// What is summed over the cells of a file to tell how accurate it is.
+// Sums over the cells of a file that give its accuracy.
 #pragma once
 
 #include "compress/sum.h"

@@ -30,7 +30,7 @@ public:
         const Row cosines = of_row(n, row);
         for (std::uint32_t c = 0; c < columns_; ++c) {
             const double cosine = cosines.at(c);
-            if (cosine > 0.0) visit(c, cosine); // called in one place, so that it is inlined
+            if (cosine > 0.0) visit(c, cosine); // called once in the code, so that it is inlined
         }
     }
 

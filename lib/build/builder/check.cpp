@@ -148,7 +148,7 @@ void check(const EnvironmentOptions& options) {
     check(options.goal, 1);
 }
 
-/// Whether a transform turns, mirrors and scales as a whole: rays then have the directions that positions tell.
+/// Whether a transform turns, mirrors and scales as a whole: rays then have the directions between positions.
 static bool keeps_angles(const float t[3][4]) {
     const auto dot = [t](int i, int k) {
         return double{t[i][0]} * double{t[k][0]} + double{t[i][1]} * double{t[k][1]} +

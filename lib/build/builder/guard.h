@@ -13,7 +13,7 @@
 
 namespace acdf::builder {
 
-/// Tells the caller how far the work is. Throws build::Cancelled once it said no, and build::CallbackFailed once it
+/// Reports progress to the caller. Throws build::Cancelled once it said no, and build::CallbackFailed once it
 /// threw.
 class Gate {
 public:

@@ -98,7 +98,7 @@ bool mirrors(const float transform[3][4]) {
 
 namespace {
 
-/// A callback of the caller's, whose exceptions are told apart from others.
+/// A callback of the caller's, whose exceptions are distinguished from others.
 template <class Call>
 bool called(const Call& call) {
     try {

@@ -18,7 +18,7 @@ struct Target::Data {
     compress::Target grid;
     compress::TargetOptions options;
     BadTexels bad;
-    std::string projection; ///< its name, where pixels told it
+    std::string projection; ///< its name, where the pixels had it
     build::Map map;         ///< of the source, as it is looked up
     double error = 0.0;     ///< build::SourceTarget
 
@@ -36,7 +36,7 @@ compress::TargetOptions internal(const TargetOptions& options);
 bool repeats(const TargetOptions& options);
 std::string wrap_text(bool repeats);
 
-/// A probe on its way into a target, on a grid that was told or is chosen as the options have it.
+/// A probe on its way into a target, on the grid of the options, or on one chosen for it.
 class TargetRows : public build::ProbeRows {
 public:
     explicit TargetRows(const TargetOptions& options, build::Progress progress = {},

@@ -31,8 +31,8 @@ Domain domain_for(const Map& map, AcdfParameterization parameterization);
 struct SourceTarget {
     compress::Target target;
     /// Bound on the relative error of E[(f/p)^2] that comes from cutting texels along borders that are straight in
-    /// the one grid and curved in the other: the share of it whose place is not known exactly. 0 on the map's own
-    /// grid.
+    /// the one grid and curved in the other: the share of it whose position is not known exactly. 0 on the map's
+    /// own grid.
     double error = 0.0;
 };
 

@@ -1,5 +1,5 @@
-// Options in the words of the command line, each in one spelling and none that has its default: what `fit.options`
-// of a file tells, so that the same text, source and program mean the same bytes.
+// Options in the words of the command line, each in one spelling and none that has its default: the metadata
+// `fit.options` of a file, so that the same text, source and program mean the same bytes.
 #pragma once
 
 #include "compress/fit/fit.h"
@@ -34,7 +34,7 @@ std::string target_text(const compress::TargetOptions& target); ///< "--channel 
 std::string fit_text(AcdfFit fit);                              ///< "--fit cdf "
 std::string codec_text(AcdfCodec codec);                        ///< "--compress zlib "
 
-/// "--budget 65536"; always told.
+/// "--budget 65536"; never left out.
 std::string goal_text(const compress::Goal& goal);
 
 /// A decimal number of fixed width, for metadata: what accuracy is reached must not change the size that a budget

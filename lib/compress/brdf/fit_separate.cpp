@@ -125,7 +125,7 @@ EncodedTree fit_variance(const std::vector<Target>& targets, const HalfGrid& gri
     if (fit.goal.kind == Goal::Kind::cells)
         fit.goal.cells = static_cast<std::uint32_t>(
             std::min<std::uint64_t>(std::uint64_t{options.goal.cells} * targets.size(), std::uint64_t{0xFFFFFFFF}));
-    // Positions of the file take up to four bytes where the steps of the grid take two: only what is placed tells.
+    // Positions of the file take up to four bytes where the steps of the grid take two: only placed curves show it.
     const auto placed = [&](Cascade cascade) {
         place_knots(cascade, grid);
         return encode_tree(cascade);

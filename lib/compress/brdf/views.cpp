@@ -41,7 +41,7 @@ public:
         parallel_for(std::size_t{0}, values_.size(), [&](std::size_t v) { values_[v] = probabilities(v); });
     }
 
-    /// Weighted sum of the relative variances of the views between two nodes, each drawn from their mixture.
+    /// Weighted sum of the relative variances of the views between two nodes, each sampled from their mixture.
     double error(std::size_t a, std::size_t b) const {
         double sum = 0.0;
         for (std::size_t i = a + 1; i < b; ++i) {

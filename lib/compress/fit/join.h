@@ -103,7 +103,7 @@ private:
     std::vector<std::uint32_t> winner_;          ///< of the matches of the tournament: the pair, from 1 on
 };
 
-/// Performs up to `joins` joins among `count` items in a line. `raise(a, b)` tells what joining item a with
+/// Performs up to `joins` joins among `count` items in a line. `raise(a, b)` returns what joining item a with
 /// its right neighbour b costs; `join(a, b, cost)` makes a stand for both and b vanish.
 /// Ties go to the leftmost pair. O(count log count) calls.
 template <class Raise, class Join>

@@ -45,7 +45,7 @@ struct Growth {
                (part.excess() > finest || part.moments.above(heaviest));
     }
 
-    /// Divides a part; its children get their place later.
+    /// Divides a part; its children get their position later.
     void divide(std::int8_t forced, Part& part, Children& out) const {
         thread_local PartScratch scratch; // arrays as long as an axis
         project(grid, total, part.box, scratch.projections);

@@ -51,7 +51,7 @@ using Knots = std::vector<std::uint32_t>; ///< with both ends
 struct KnotPosition {
     std::uint32_t at = 0;
     double cost = kInfinite;  ///< of all segments before it
-    std::size_t previous = 0; ///< which place the knot before it takes
+    std::size_t previous = 0; ///< which position the knot before it takes
 };
 
 /// The knot_positions of knot i, in order: up to kWindow strides either way. The ends of the line stay.
@@ -65,7 +65,7 @@ std::vector<KnotPosition> knot_positions(const Knots& knots, std::size_t i, std:
     return out;
 }
 
-/// The best joint move of all knots: dynamic programming over the knots in order, over a window of knot_positions
+/// The best joint move of all knots: dynamic programming over the knots in order, over a range of knot_positions
 /// each. Returns what it gained.
 double move_knots(const PolishedLine& line, std::uint32_t stride, Knots& knots) {
     std::vector<std::vector<KnotPosition>> table{knot_positions(knots, 0, stride)};

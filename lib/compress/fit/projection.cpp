@@ -15,7 +15,7 @@ constexpr std::size_t kTile = 128; // steps of them that stay in the cache
 struct LineSums {
     const float *values = nullptr, *peaks = nullptr; ///< from the box's first step on
     double weight = 1.0;                             ///< its measure on the other axes
-    std::array<std::uint32_t, ACDF_MAX_AXES> index;  ///< its place on them
+    std::array<std::uint32_t, ACDF_MAX_AXES> index;  ///< its position on them
 };
 
 struct LineSum {
@@ -24,7 +24,7 @@ struct LineSum {
 };
 
 /// Calls `visit(offset, index)` for every line of the box along the last axis: where in `values` it begins, and
-/// its place on the other axes.
+/// its position on the other axes.
 template <class Visit>
 void for_each_line(const Grid& grid, const Box& box, const Visit& visit) {
     const std::size_t last = grid.dimensions() - 1;

@@ -12,7 +12,7 @@
 namespace acdf::compress {
 
 /// A tree of splits in two, in preorder. A child is the index of a later split, or `tile` | number of a tile; tiles
-/// are numbered in the order in which a walk meets them.
+/// are numbered in the order in which a traversal meets them.
 struct TileTree {
     static constexpr std::uint32_t tile = 0x80000000u;
     static constexpr std::uint32_t most_depth = 32; ///< splits on a path
@@ -31,7 +31,7 @@ struct CoarseMap {
     static constexpr std::uint32_t columns = 128, rows = 64;
     std::vector<double> values = std::vector<double>(std::size_t{columns} * rows);
 
-    /// At a place given as fractions of all columns and rows, in [0, 1).
+    /// At a position given as fractions of all columns and rows, in [0, 1).
     double at(double column, double row) const {
         return values[std::size_t(row * rows) * columns + std::size_t(column * columns)];
     }

@@ -53,7 +53,7 @@ struct LocalFit {
 /// threads.
 ///
 /// Beside an MIS partner a share is the flux that is left to the file, rows are 0 where the partner covers a tile,
-/// and records tell the irradiance.
+/// and records hold the irradiance.
 class LocalFitter {
 public:
     /// Divides into tiles; `size.inside_bytes` is of no meaning. Target, bins and their light must outlive it.

@@ -149,7 +149,7 @@ public:
             cascade_.curves.push_back(std::move(curve));
         }
     }
-    /// Encodes all behind the curves of the environment; `stored` tells which bins have one, in the order in which
+    /// Encodes all behind the curves of the environment; `stored` says which bins have one, in the order in which
     /// they were appended.
     EncodedTree encode(const std::vector<bool>& stored, double price, const EncodedTree& environment) const {
         EncodedTree tree = encode_tree(cascade_, price, std::numeric_limits<double>::infinity(), environment.bytes);

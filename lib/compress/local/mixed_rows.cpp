@@ -107,7 +107,7 @@ float as_part(double value) {
     return value > 0.0 ? std::max(static_cast<float>(value), std::numeric_limits<float>::min()) : 0.0f;
 }
 
-/// What bright tiles sample from a place on a face.
+/// What bright tiles sample at a position on a face.
 double light_weights(const std::vector<AcdfBrightTile>& bright_tiles, const Direction& place, double length) {
     AcdfLocalPoint point = {};
     std::copy(place.begin(), place.end(), point.normal);
@@ -154,7 +154,7 @@ public:
             before += double{own_[bin][t]};
             after += s.mixed[t];
         }
-        // The sum stays: it tells the irradiance, and weighs the row in mixtures.
+        // The sum stays: it is the irradiance, and the row's weight in mixtures.
         for (std::size_t t = 0; t < out.size(); ++t) {
             const double own = double{own_[bin][t]};
             const double least = std::max(kLeastPart * own, std::min(own, least_cosine_ * light_.whole(t)));

@@ -190,7 +190,7 @@ Box TileGrids::box_of(std::size_t tile, const TileGrid& grid, const std::array<s
     return out;
 }
 
-/// Cells so close that one cosine serves them are told together.
+/// Cells so close that one cosine serves them are visited together.
 std::vector<LitCell> TileGrids::lit_cells(std::size_t tile) const {
     const TileGrid& grid = grids_[tile];
     const std::array<double, 2> texel = texel_radians(target_, tiles_[tile]);

@@ -110,7 +110,7 @@ private:
         });
     }
 
-    /// Sets, by `set`, what curves are of histograms of the weights that `weight` tells of normals.
+    /// Sets, by `set`, what curves are of histograms of the weights that `weight` returns for normals.
     template <class Weight>
     void find_curves(const Weight& weight,
                      void (NoiseKernel::*set)(const NoiseKernel::Histogram&, NoiseCurve&) const) {

@@ -44,7 +44,7 @@ inline std::size_t end_of(const CurveShape& curve, std::size_t offset) {
 
 /// Byte offsets of all curves, the first of which begins at `begin`, and of the end. Links start at one byte (code
 /// 1; 0 where there are none); those that do not fit become wider, which moves what follows. `any_child(i, test)`
-/// tells whether a child of curve i passes.
+/// returns whether a child of curve i passes.
 template <class AnyChild>
 std::vector<std::size_t> place(std::vector<CurveShape>& curves, const AnyChild& any_child, std::size_t begin = 0) {
     std::vector<std::size_t> offset(curves.size() + 1, begin);

@@ -35,7 +35,7 @@ void put_children(const AcdfCurve& curve, std::uint32_t at, std::vector<std::uin
     for (std::size_t k = children.size(); k-- > 0;) expected.push_back(at + children[k].first);
 }
 
-/// Empty headers where the curves are in no order that planes can tell.
+/// Empty headers where the curves are in an order that planes cannot store.
 Streams streams_of(const std::vector<std::uint8_t>& tree) {
     Streams streams;
     std::vector<std::uint32_t> expected; // where the subtrees that are still to come begin; the next one last

@@ -33,7 +33,7 @@ struct Rounding {
 Rounding rounding_to(const std::vector<double>& probability, std::uint32_t code);
 
 /// The code of the width that costs least: `price` a byte of each of `values`, and `reach` times the excess that
-/// `rounding(code)` tells. `lit` probabilities are above 0, and each needs a share. Widths whose worst ratio is
+/// `rounding(code)` returns. `lit` probabilities are above 0, and each needs a share. Widths whose worst ratio is
 /// above `most_ratio` are passed over while there is a wider one.
 template <class RoundingOf>
 std::uint32_t best_width(std::size_t values, std::uint64_t lit, double reach, double price, double most_ratio,

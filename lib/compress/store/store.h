@@ -87,7 +87,7 @@ Chunk partner_chunk(const Partner& partner, float recommended_light_share,
                     const std::vector<AcdfPartnerRecord>& records);
 
 /// The whole file. The same arguments give the same bytes. Metadata is never compressed: it is short, stays
-/// readable, and keeps its size whatever numbers it tells.
+/// readable, and keeps its size whatever numbers it holds.
 std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& description,
                                 AcdfCodec codec = ACDF_CODEC_NONE);
 /// The same of a tree of halvings.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kBorders = 16;      ///< positions on an axis where a cell may be divided
 constexpr float kLeastPoints = 8.0f;        ///< of a cell
-constexpr std::uint32_t kCellPoints = 1024; ///< points of a cell that tell where it is divided, about
+constexpr std::uint32_t kCellPoints = 1024; ///< points of a cell that decide where it is divided, about
 
 /// The root of the second moment of the points that are summed, with the best rows for them.
 double cost_of(const VisibilitySums& sums, const std::vector<float>& prior, std::vector<float>& work) {

@@ -27,7 +27,7 @@ struct VisibilitySums {
     }
 };
 
-/// How much is believed of what few points tell.
+/// How much an estimate from few points is trusted.
 struct VisibilityCaution {
     float floor = 0.02f; ///< the least factor: such a share of the samples goes where the normal alone sends them
     float prior = 1.0f;  ///< points that the factors of the cell around count as
@@ -53,8 +53,8 @@ public:
                     const Box& high, std::uint32_t cells);
 
     std::uint32_t cell_count() const { return cell_count_; }
-    /// In preorder, cells numbered in the order of the walk. On both sides of a split as far as `blend` times the
-    /// smallest cell that touches it is mixed.
+    /// In preorder, cells numbered in the order of the traversal. On both sides of a split as far as `blend` times
+    /// the smallest cell that touches it is mixed.
     std::vector<AcdfVisibilitySplit> splits(double blend) const;
     /// Cells that follow each other.
     struct Range {

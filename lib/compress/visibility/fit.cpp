@@ -15,7 +15,7 @@
 namespace acdf::compress {
 namespace {
 
-/// Splits of tiles that cells tell apart: more of them and there are fewer cells (docs/visibility.md).
+/// Splits of tiles that cells distinguish: with more of them there are fewer cells (docs/visibility.md).
 constexpr std::uint32_t kColumns = 127;
 /// The same beside portals, through which most samples are taken: cells that know these are worth more.
 constexpr std::uint32_t kColumnsBesidePortals = 31;
@@ -23,7 +23,7 @@ constexpr std::uint32_t kColumnsBesidePortals = 31;
 constexpr std::uint64_t kCellsOfRegion = 200;
 /// How far cells are mixed, of the smaller one at their border.
 constexpr double kBlend = 0.4;
-/// Points of a cell, in the mean: those that tell where it is divided and those that tell its row; rounds in which
+/// Points of a cell, in the mean: those that decide where it is divided and those for its row; rounds in which
 /// the first are found; and candidates for each.
 constexpr std::size_t kPointsOfDivision = 40, kPointsOfRow = 80;
 constexpr std::uint32_t kRounds = 3;
@@ -33,7 +33,7 @@ constexpr double kDivisionShare = 0.4;
 /// Around the points: light is gathered next to them, too.
 constexpr float kMargin = 1e-3f;
 
-/// The box of the first points that a source tells of, which are as even as any; a little larger, as light is
+/// The box of the first points of a source, which are as even as any; a little larger, as light is
 /// gathered next to them, too. It has a volume, wherever it lies.
 AcdfVisibility header_of(const PointSource& source, const VisibilityFrame& frame) {
     AcdfVisibility out = {};
@@ -58,7 +58,7 @@ AcdfVisibility header_of(const PointSource& source, const VisibilityFrame& frame
         size = std::max(size, out.high[k] - out.low[k]);
     }
     if (!(size > 0.0f)) size = 1.0f;
-    for (std::size_t k = 0; k < 3; ++k) { // far from the origin the margin may be less than floats tell apart
+    for (std::size_t k = 0; k < 3; ++k) { // far from the origin the margin may be less than one step of floats
         out.low[k] = std::min(out.low[k] - kMargin * size, std::nextafter(out.low[k], -kInfinity));
         out.high[k] = std::max(out.high[k] + kMargin * size, std::nextafter(out.high[k], kInfinity));
     }

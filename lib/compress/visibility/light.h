@@ -1,4 +1,4 @@
-// What of the light reaches points of a scene, as rays tell it.
+// How much of the light reaches points of a scene, found by rays.
 #pragma once
 
 #include "compress/visibility/parts.h"
@@ -41,7 +41,7 @@ using Occluded = std::function<bool(const VisibilityPoint& point, const std::arr
 struct VisibilityLight {
     std::size_t parts = 0;
     std::vector<float> given;    ///< points x parts; negative where the ray does not arrive
-    std::vector<double> arrives; ///< one a point: the light that its rays tell
+    std::vector<double> arrives; ///< one a point: the light that its rays find
     std::vector<double> scale;   ///< one a point: what its light is multiplied with
     double dark = 0.0;           ///< what is added to the light of each point
 
@@ -61,7 +61,7 @@ struct VisibilityLight {
 struct VisibilityScene {
     PointSource points;
     Occluded occluded;
-    std::shared_ptr<const PortalSet> portals{}; ///< what light comes through, as far as it is told; null: not
+    std::shared_ptr<const PortalSet> portals{}; ///< the portals that light comes through; null: not known
 
     explicit operator bool() const { return points && occluded; }
 };

@@ -10,7 +10,7 @@
 namespace acdf::compress {
 
 /// A local environment with tiles, cut where positions may see one side and not the other. Parts are numbered in
-/// the order of a walk; behind them come the bright tiles.
+/// the order of a traversal; behind them come the bright tiles.
 class VisibilityParts {
 public:
     static constexpr std::uint32_t directions = 64; ///< of a part: where its light comes from

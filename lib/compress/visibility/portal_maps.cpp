@@ -18,7 +18,7 @@ using Vector = std::array<double, 3>;
 
 /// Pieces of a portal along each side: how closely cosines and what hides it are followed.
 constexpr std::uint32_t kPieces = 4;
-/// Cells of a map along each axis: finer ones tell little more, and coarser ones much less
+/// Cells of a map along each axis: finer ones gain little, and coarser ones lose much
 /// (docs/notes/visibility.md).
 constexpr std::uint32_t kFinest = 256, kCoarsest = 64;
 /// Visibility along each axis of a cell where light is looked up, at least and at most: as fine as the probe is.

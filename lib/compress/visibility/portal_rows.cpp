@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kMostPieces = ACDF_MAX_PORTAL_PIECES * ACDF_MAX_PORTAL_PIECES;
 /// Rays of a point to all that the row samples, to find what comes in by other ways.
 constexpr std::uint32_t kRays = 16;
-/// How much is believed of what few points tell, and the least and the most of the samples that rows sample: light
+/// How much an estimate from few points is trusted, and the least and the most of the samples that rows take: light
 /// may come where no ray found any, and through a portal that no ray came through.
 constexpr VisibilityCaution kCaution{0.02f, 1.0f};
 constexpr double kLeastOfRow = 0.02, kMostOfRow = 0.9;
@@ -117,7 +117,7 @@ private:
     std::size_t parts_;
 };
 
-/// What the points of a cell tell.
+/// What the points of a cell see.
 struct CellSums {
     std::vector<float> all, seen;
     float points = 0.0f;

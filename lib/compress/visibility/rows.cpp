@@ -69,7 +69,7 @@ void find_priors(Region& region, const VisibilityCells& tree, const VisibilityCe
     }
 }
 
-/// The light of each point by what its cells see of each part: one ray a part tells little of it, and what a rare
+/// The light of each point by what its cells see of each part: one ray a part shows little of it, and what a rare
 /// ray finds must not count as the light of all.
 void rescale_by_cells(VisibilityLight& light, const Region& region) {
     std::vector<double> arrives(light.points(), 0.0), weight(light.points(), 0.0);
@@ -86,7 +86,7 @@ void rescale_by_cells(VisibilityLight& light, const Region& region) {
         if (light.scale[i] > 0.0 && weight[i] > 0.0) light.rescale(i, arrives[i] / weight[i] / light.scale[i]);
 }
 
-/// The second moment of points, each by what the others of its cells tell.
+/// The second moment of points, each estimated from the others of its cells.
 double moment_of_others(const Region& region, const VisibilityLight& light, const VisibilityCaution& caution) {
     double moment = 0.0;
     for (const VisibleShare& share : region.shares) {

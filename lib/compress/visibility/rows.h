@@ -54,7 +54,7 @@ struct VisibilityRows {
 };
 
 /// Shoots rays to `parts` from all points that count for the cells of `range`. Factors have the caution that serves
-/// best points that rows have not seen: each by what the others tell. `dark`: as of trace_visibility.
+/// best points that rows have not seen: each estimated from the others. `dark`: as of trace_visibility.
 VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityCells& tree,
                                const VisibilityCells::Range& range, const std::vector<VisibleShare>& shares,
                                const std::vector<VisibilityPoint>& points, const Occluded& occluded, double dark);

@@ -1,4 +1,4 @@
-// The module that draws text: the one that is linked with FreeType.
+// The module that renders text: the one that is linked with FreeType.
 #include "images/module.h"
 
 #include <ft2build.h>

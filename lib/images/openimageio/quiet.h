@@ -4,7 +4,7 @@
 namespace acdf::images {
 
 /// Keeps libraries that print to `stderr` from doing so while any of these lives, in any thread. What went to
-/// `stderr` before must be told by a copy of it. Does nothing but with glibc, where `stderr` is a variable.
+/// `stderr` before must use a copy of it. Does nothing but with glibc, where `stderr` is a variable.
 class Quiet {
 public:
     Quiet();

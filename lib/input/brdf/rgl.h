@@ -13,7 +13,7 @@ namespace acdf::input {
 struct RglTables {
     RglNodes nodes;      ///< of the view
     RglTable ndf, sigma; ///< distribution of normals over half-vectors; projected area over views; no slices
-    RglTable colour;     ///< rho cos(theta_i), less what `jacobian` tells; three channels: linear sRGB
+    RglTable colour;     ///< rho cos(theta_i), less the factor `jacobian`; three channels: linear sRGB
     RglWarp vndf;        ///< visible normals
     RglWarp luminance;
     bool isotropic = true; ///< half-vectors count phi from the view's
@@ -37,7 +37,7 @@ struct RglView {
 template <class Real>
 RglView<Real> rgl_view(const RglTables& tables, const Real wo[3]);
 
-/// A half-vector as a place in the tables.
+/// A half-vector as a position in the tables.
 template <class Real>
 struct RglHalf {
     Real x = 0, y = 0;
@@ -64,7 +64,7 @@ std::unique_ptr<RglBrdf> parse_rgl(const std::string& name, const std::uint8_t* 
 
 /// Weights with which spectra at these wavelengths (nm, increasing) become linear sRGB: 3 x wavelengths. CIE 1931
 /// by the fit of Wyman, Sloan and Shirley (JCGT 2(2), 2013); equal energy; a constant spectrum keeps its value.
-/// Empty where the wavelengths do not tell all three.
+/// Empty where the wavelengths do not cover all three.
 std::vector<double> srgb_weights(const std::vector<float>& wavelengths);
 
 } // namespace acdf::input

@@ -43,7 +43,7 @@ public:
 
     const TensorField* find(const std::string& field) const; ///< null: there is none
 
-    /// The numbers of a field of type float32 and of as many dimensions as told; throws Error if it is anything
+    /// The numbers of a field of type float32 and of that many dimensions; throws Error if it is anything
     /// else.
     const TensorField& floats(const std::string& field, std::size_t dimensions) const;
 

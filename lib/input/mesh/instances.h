@@ -27,7 +27,7 @@ std::vector<Instances> read_instances(const std::string& path);
 std::vector<std::string> scene_files(const std::string& path);
 
 /// Bytes of its meshes, each counted as often as it stands somewhere; 0 of what is not there or cannot be read,
-/// which is told of when it is read.
+/// which is reported when it is read.
 std::uint64_t scene_bytes(const std::string& path);
 
 /// SHA-256, 64 hex digits: of a file's bytes; of a list of instances, of the digits of all its files, a line each.

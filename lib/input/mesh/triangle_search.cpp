@@ -1,4 +1,4 @@
-// What lies on a ray: a walk through a hierarchy of boxes with a stack, four boxes and four triangles at once. What
+// What lies on a ray: a traversal of a hierarchy of boxes with a stack, four boxes and four triangles at once. What
 // compilers make of vectors has the same results on every processor.
 #include "input/mesh/triangles.h"
 

@@ -201,7 +201,7 @@ private:
         const std::size_t display_floats =
             std::size_t{3} * static_cast<std::size_t>(display.width) * static_cast<std::size_t>(display.height);
         if (contains(display, data)) {
-            // Straight into place. OpenEXR: pixels of the display window without data are black.
+            // Straight into the result. OpenEXR: pixels of the display window without data are black.
             image.rgb.assign(display_floats, 0.0f);
             read_channels(image.rgb.data() + offset(data.x - display.x, data.y - display.y, display.width),
                           display.width);

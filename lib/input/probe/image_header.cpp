@@ -15,7 +15,7 @@ ImageSize image_size(const std::string& source) {
         return {4 * face.width, 3 * face.height};
     }
     const images::ImageFile file(source);
-    if (!file.is_open()) return {}; // what is wrong is told when the image is read
+    if (!file.is_open()) return {}; // errors are reported when the image is read
     const auto size = [](const images::Window& window) {
         return ImageSize{std::max(window.width, 0), std::max(window.height, 0)};
     };

@@ -147,7 +147,7 @@ Probe read_probe(const std::string& path, const ProbeOptions& options) {
 
 Probe read_probe(const std::string& path, const ProbeOptions& options, ProbeRows& rows) {
     Probe probe;
-    probe.source_sha256 = probe_sha256(path); // first: it tells missing files and folders apart
+    probe.source_sha256 = probe_sha256(path); // first: its errors distinguish missing files from folders
     probe.source_name = probe_name(path);
     try {
         Reading(path, options, rows, probe).run();

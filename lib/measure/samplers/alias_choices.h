@@ -12,7 +12,7 @@ struct AliasChoice {
     std::uint32_t alias; ///< what it stands for else
 };
 
-/// A place for each mass (Walker, ACM TOMS 3(3), 1977), in linear time after Vose (IEEE TSE 17(9), 1991). Masses
+/// A slot for each mass (Walker, ACM TOMS 3(3), 1977), in linear time after Vose (IEEE TSE 17(9), 1991). Masses
 /// have the mean 1; what has the mass 0 is never sampled.
 std::vector<AliasChoice> alias_choices(std::vector<double> mass);
 

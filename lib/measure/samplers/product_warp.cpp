@@ -104,7 +104,7 @@ public:
     }
 
 private:
-    /// Lights come before the mixture in u[0] (acdf_local_sample_bright_tile).
+    /// Bright tiles come before the mixture in u[0] (acdf_local_sample_bright_tile).
     bool find(const std::uint32_t* square, AcdfRange* range, AcdfStratum* strata) const {
         double probability;
         const std::uint32_t tile =

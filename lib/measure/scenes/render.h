@@ -28,8 +28,8 @@ struct Rendering {
     std::vector<double> deviation_square; ///< seeds x points: (luminance - mean)^2 seeds / (seeds - 1)
     Tally tally;                          ///< of all points and seeds
 
-    /// Mean relative variance as each seed tells it, `scale` as noise_scale gives it; the mean over seeds is that
-    /// of the pictures, and their spread that of independent ones. Of three seeds at least.
+    /// Mean relative variance as each seed estimates it, `scale` as noise_scale gives it; the mean over seeds is
+    /// that of the pictures, and their spread that of independent ones. Of three seeds at least.
     std::vector<double> noise(const std::vector<double>& scale) const;
 };
 

@@ -43,7 +43,7 @@ public:
     const PortalAxes& axes() const { return axes_; }
     std::uint32_t size() const { return size_; }
     double sum(std::uint32_t column, std::uint32_t row) const { return sums_[at(column, row)]; }
-    /// The light below and left of a place, linear within cells.
+    /// The light below and left of a position, linear within cells.
     double sum_at(double x, double y) const {
         const auto column = std::min(static_cast<std::uint32_t>(x), size_ - 1),
                    row = std::min(static_cast<std::uint32_t>(y), size_ - 1);
@@ -102,7 +102,7 @@ struct Window {
         light = std::max(column_sum(high[0]) - column_sum(low[0]), 0.0);
     }
 
-    /// Of the window's rows, left of a place.
+    /// Of the rectangle's rows, left of a position.
     double column_sum(double x) const { return map->sum_at(x, high[1]) - map->sum_at(x, low[1]); }
 
     /// A direction along the portal's axes, not of unit length.

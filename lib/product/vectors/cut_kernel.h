@@ -17,7 +17,7 @@ struct DrawnParts {
     alignas(64) long long part[kRoom];
 };
 
-/// A mixture that is walked is a part's.
+/// A mixture that is traversed is a part's.
 struct CutWalks : Walks {
     alignas(64) double probability[kRoom];
 };
@@ -68,7 +68,7 @@ ACDF_LANE void draw_cut_lights(const AcdfLocal& local, const AcdfCut& cut, const
     }
 }
 
-/* acdf_cut_samples_bright_tile, and what samples from a part's mixture begins its walk. Returns the lanes that
+/* acdf_cut_samples_bright_tile, and what samples from a part's mixture begins its traversal. Returns the lanes that
  * neither does: those of mixtures without weight. */
 ACDF_LANE unsigned enter_parts(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
                                const DrawnParts& sampled, std::size_t at, unsigned there, CutWalks* walks,

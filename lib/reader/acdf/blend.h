@@ -2,7 +2,7 @@
  * CUDA/HIP/SYCL, with the same contract (SPEC.md §9, §10).
  *
  * Boxes are split in two until tiles are left. Splits and tiles are stored once; each bin has a *row* of one byte a
- * split: the probability of its lower part. What a caller samples from is a *mixture* of up to four rows, walked
+ * split: the probability of its lower part. What a caller samples from is a *mixture* of up to four rows, traversed
  * side by side: its pdf is exactly the weighted sum of theirs, at the price of one more byte read a split and
  * row. Within a tile a tree of curves refines, for all bins alike. */
 #ifndef ACDF_BLEND_H
@@ -68,10 +68,10 @@ ACDF_FN void acdf_range_cut(AcdfRange* range, uint32_t position, int upper) {
     else range->high = position;
 }
 
-/* The walks below are written for a number of rows that the compiler knows: weights then stay in registers. */
+/* The traversals below are written for a number of rows that the compiler knows: weights then stay in registers. */
 
 /* What a mixture gives to a tile to which each row gives that part of itself: in this order, so that tables of
- * parts tell the same pdf. */
+ * parts give the same pdf. */
 ACDF_INLINE double acdf_mixture_of(const AcdfMixture* mix, const int rows, const double* part) {
     double sum = 0.0;
     int i;
@@ -123,7 +123,7 @@ ACDF_INLINE uint32_t acdf_blend_sample_rows(const AcdfBlend* blend, const AcdfMi
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* Where a square lies does not depend on weights: the walk is free of branches on the data, and the products
+/* Where a square lies does not depend on weights: the traversal is free of branches on the data, and the products
  * follow it. */
 ACDF_INLINE uint32_t acdf_blend_find_rows(const AcdfBlend* blend, const AcdfMixture* mix, const int rows,
                                           uint32_t node, const uint32_t* square, AcdfRange* range,
@@ -175,7 +175,7 @@ ACDF_INLINE uint32_t acdf_split_upper(const AcdfSplit* split, const uint32_t* sq
     return (uint32_t)(square[split->place & 7u] >= split->place >> 3);
 }
 
-/* Where walks begin: split 0, or the only tile. */
+/* Where traversals begin: split 0, or the only tile. */
 ACDF_FN uint32_t acdf_blend_root(const AcdfBlend* blend) {
     return blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
 }

@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* A direction as a place in the table. */
+/* A direction as a position in the table. */
 typedef struct AcdfBrdfPosition {
     double position[2];
     double dot, length; /* |wo . (wo + wi)| and |wo + wi|: the cosine |wo . wh| is dot / length */
@@ -50,8 +50,8 @@ ACDF_INLINE void acdf_brdf_position(const AcdfBrdf* brdf, const AcdfBrdfView* vi
                                         (length * (length + fabs(half[2])))); /* no cancellation */
 }
 
-/* Place of the half-vector of wo and wi; `sign` is on which side of the mirror it lies. Returns 0 where wi is not
- * of unit length or opposite to wo. */
+/* Position of the half-vector of wo and wi; `sign` is on which side of the mirror it lies. Returns 0 where wi is
+ * not of unit length or opposite to wo. */
 ACDF_INLINE int acdf_brdf_half_position(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3],
                                         AcdfBrdfPosition* place, double* sign) {
     double half[3];

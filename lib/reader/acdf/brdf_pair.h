@@ -1,11 +1,12 @@
-/* Samples and pdfs of a BRDF file by its runtime tables (acdf/brdf_tables.h): those of the walk, bit for bit. */
+/* Samples and pdfs of a BRDF file by its runtime tables (acdf/brdf_tables.h): those of the traversal, bit for bit.
+ */
 #ifndef ACDF_BRDF_PAIR_H
 #define ACDF_BRDF_PAIR_H
 
 #include <acdf/brdf_half.h>
 
 #ifdef ACDF_SSE2
-#define ACDF_BRDF_GUESSES 1 /* samples take tables; without vectors of two the walk is as fast */
+#define ACDF_BRDF_GUESSES 1 /* samples take tables; without vectors of two the traversal is as fast */
 #endif
 
 #ifdef __cplusplus
@@ -48,7 +49,7 @@ ACDF_INLINE float acdf_brdf_pair_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* v
 
 #ifdef ACDF_BRDF_GUESSES
 
-/* A walk with two rows, as acdf_blend_sample has it: what is left of the random numbers, of the rows' weights,
+/* A traversal with two rows, as in acdf_blend_sample: what is left of the random numbers, of the rows' weights,
  * their sum, twice, and what part of each row is left. */
 typedef struct AcdfPairWalk {
     __m128d x, weight, chosen, part;
@@ -105,7 +106,7 @@ ACDF_INLINE uint32_t acdf_brdf_guess(const AcdfBrdfTables* tables, uint32_t lowe
     return guesses[row << bits | (column < most ? column : most)];
 }
 
-/* Goes on from a split as acdf_blend_sample does: here no guess tells which way. Returns the cell. */
+/* Goes on from a split as acdf_blend_sample does: here there is no guess which way. Returns the cell. */
 ACDF_OUTLINE uint32_t acdf_brdf_pair_walk(const AcdfBrdf* brdf, const uint8_t* row0, const uint8_t* row1,
                                           uint32_t node, AcdfPairWalk* walk) {
     const double* codes = (const double*)acdf_brdf_words(brdf->tables, brdf->tables->codes);
@@ -141,10 +142,10 @@ ACDF_OUTLINE uint32_t acdf_brdf_pair_walk(const AcdfBrdf* brdf, const uint8_t* r
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* Samples a cell of a mixture of the two rows around a view, as acdf_blend_sample does: the walk goes where a guess
- * says, so that nothing waits for a comparison. Where one disagrees, the walk goes the other way, and then where
- * the cell across that side is. Returns the cell's probability; 0 where there is nothing to sample, and where all
- * that is left of the weight is below the random numbers. */
+/* Samples a cell of a mixture of the two rows around a view, as acdf_blend_sample does: the traversal goes where a
+ * guess says, so that nothing waits for a comparison. Where one disagrees, the traversal goes the other way, and
+ * then where the cell across that side is. Returns the cell's probability; 0 where there is nothing to sample, and
+ * where all that is left of the weight is below the random numbers. */
 ACDF_INLINE double acdf_brdf_pair_sample_cell(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double u[2],
                                               __m128d* left, const AcdfBrdfPath** sampled) {
     const AcdfBrdfTables* tables = brdf->tables;
@@ -185,7 +186,7 @@ ACDF_INLINE double acdf_brdf_pair_sample_cell(const AcdfBrdf* brdf, const AcdfBr
         acdf_pair_go(&walk, number, lower, low, _mm_loadh_pd(_mm_load_sd(part + code0), part + code1));
     }
     if (depth == ACDF_PATH_SPLITS) {
-        AcdfPairWalk rest = walk; /* what is called gets its address: the walk stays in registers */
+        AcdfPairWalk rest = walk; /* functions called get its address: the traversal stays in registers */
         const uint32_t upper = (uint32_t)(path->ways >> (4 * depth - 4)) & 1u;
         path = &paths[acdf_brdf_pair_walk(brdf, row0, row1, splits[path->splits[depth - 1]].child[upper], &rest)];
         walk = rest;
@@ -203,7 +204,7 @@ ACDF_INLINE __m128d acdf_pair_doubles(const int32_t of[2]) {
 }
 
 /* acdf_brdf_view_sample, of tables that have guesses. Returns 0 where there is nothing to sample, and where
- * rounding wi may carry it over the border of its cell: then the walk is to be asked. */
+ * rounding wi may carry it over the border of its cell: then the traversal decides. */
 ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0, double u1,
                                       AcdfDirectionSample* out) {
     const AcdfBrdfTables* tables = brdf->tables;

@@ -2,7 +2,7 @@
  * each view gives to each cell, and which cell random numbers are likely to lead to. Made once at load
  * (acdf/reader.h); flat words without pointers, which a GPU takes as they lie.
  *
- * Pdfs, and cells of samples, are those of the walk (acdf/blend.h) to the bit. */
+ * Pdfs, and cells of samples, are those of the traversal (acdf/blend.h) to the bit. */
 #ifndef ACDF_BRDF_TABLES_H
 #define ACDF_BRDF_TABLES_H
 

@@ -19,7 +19,7 @@ typedef struct AcdfBrdf {
     uint32_t columns;             /* axis 0, phi_h */
     uint32_t rows;                /* axis 1, cos_theta_h */
     double total;                 /* sum of the bins' albedos */
-    const AcdfBrdfTables* tables; /* runtime tables; null: walk */
+    const AcdfBrdfTables* tables; /* runtime tables; null: traverse the tree */
 } AcdfBrdf;
 
 /* What serves a view: which rows or which tree, and the turn that brings wo into the plane of x and z. */

@@ -79,7 +79,7 @@ ACDF_INLINE void acdf_store_weights(AcdfTwoWeights weights, double out[2]) {
 }
 #endif
 
-/* The same of light `k` as its place sees it. */
+/* The same of bright tile `k` as its position sees it. */
 ACDF_FN double acdf_local_bright_tile_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
     const double weight = acdf_bright_tile_weight(&local->bright_tiles[k], point);
     return point->visibility.count > 0 ? weight * acdf_mixture_visibility(&point->visibility, 1 + k) : weight;

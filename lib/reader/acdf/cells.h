@@ -12,14 +12,14 @@
 extern "C" {
 #endif
 
-/* Whether floats tell a direction, by its x x + y y and the square of its length: 0.9999 to 1.0001 and 2^-40 up, by
- * their bits, which tell what is not finite, too. */
+/* Whether floats decide a direction, by its x x + y y and the square of its length: 0.9999 to 1.0001 and 2^-40 up.
+ * It compares their bits, which also excludes what is not finite. */
 ACDF_INLINE int acdf_is_direction(float sin2, float length2) {
     return acdf_float_bits(length2) - 0x3F7FF972u <= 0x000009D4u && acdf_float_bits(sin2) >= 0x2B800000u;
 }
 
 /* Where a direction lies: in place->slope not the tangent of the local azimuth but that itself. Returns 0 where
- * floats do not tell: within 2^-20 of a pole, and for directions whose length differs from 1 by more than 5e-5 or
+ * floats cannot decide: within 2^-20 of a pole, and for directions whose length differs from 1 by more than 5e-5 or
  * that are not finite. */
 ACDF_INLINE int acdf_keys_of_direction(uint32_t octahedral, const float direction[3], AcdfDirectionKeys* place) {
     const float x = direction[0], y = direction[1], z = direction[2];

@@ -69,8 +69,8 @@
 extern "C" {
 #endif
 
-/* Whether numbers are neither NaN nor infinite, by their bits: compilers that are told that there are no such
- * numbers (-ffast-math) leave out comparisons that tell. */
+/* Whether numbers are neither NaN nor infinite, by their bits: compilers that assume that there are no such numbers
+ * (-ffast-math) leave out the comparisons. */
 ACDF_FN int acdf_is_finite(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);

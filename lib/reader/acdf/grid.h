@@ -37,7 +37,7 @@ ACDF_FN float acdf_grid_pdf(const AcdfGrid* grid, const AcdfRange range[2], cons
                          acdf_tilt_pdf(range[0].tilt, t[0]) * acdf_tilt_pdf(range[1].tilt, t[1]));
 }
 
-/* A place on one axis of the square, at fraction t of a range, ACDF_BORDER inside it. */
+/* A position on one axis of the square, at fraction t of a range, ACDF_BORDER inside it. */
 ACDF_FN double acdf_octahedral_position_on(const AcdfRange* range, double t, uint32_t resolution) {
     const double border = (double)resolution * (0.5 * ACDF_BORDER), low = (double)range->low;
     const double at = low + t * (double)(range->high - range->low);

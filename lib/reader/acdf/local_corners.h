@@ -91,7 +91,7 @@ ACDF_INLINE const AcdfFacet* acdf_local_find_facet(const AcdfLocal* local, const
 #endif
 }
 
-/* Sets what a normal's triangle tells but for rows. */
+/* Sets all of a normal's triangle but rows. */
 ACDF_INLINE void acdf_local_set_facet(const float normal[3], const AcdfFacet* facet, double scale,
                                       AcdfLocalPoint* out) {
     acdf_local_scaled(normal, scale, acdf_local_length(normal), out);

@@ -26,7 +26,7 @@ ACDF_INLINE AcdfFastGrid acdf_local_fast_record(const AcdfLocal* local, uint32_t
 ACDF_INLINE AcdfFastGrid acdf_local_fast_sampled(const AcdfLocal* local, uint32_t tile, AcdfRange* range) {
     uint32_t node = acdf_blend_root(&local->blend), before = 0;
     if (local->tables) return acdf_local_fast_record(local, tile, range);
-    /* Splits and tiles are numbered as the walk meets them; a part has a tile more than splits. */
+    /* Splits and tiles are numbered as the traversal meets them; a part has a tile more than splits. */
     while (!(node & ACDF_TILE_FLAG)) {
         const AcdfSplit* split = &local->blend.splits[node];
         const uint32_t upper = split->child[1];

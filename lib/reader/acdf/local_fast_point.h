@@ -72,7 +72,7 @@ ACDF_INLINE void acdf_local_fast_bright_tiles(const AcdfLocal* local, AcdfLocalP
     out->lit = k;
     out->bright_tiles = sum[0] + sum[1];
 }
-/* The same by tables; where a facet is known, all as acdf_facet_bright_tiles tells it. */
+/* The same by tables; where a facet is known, all as acdf_facet_bright_tiles returns it. */
 ACDF_INLINE void acdf_local_tabled_bright_tiles(const AcdfLocal* local, AcdfLocalPoint* out) {
 #ifdef ACDF_SSE2
     const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local->tables);

@@ -23,7 +23,7 @@ typedef struct AcdfLocal {
     uint32_t columns;      /* of that grid */
     uint32_t rows;
     double cosine_share;
-    const AcdfLocalTables* tables;  /* runtime tables; null: splits are walked */
+    const AcdfLocalTables* tables;  /* runtime tables; null: splits are traversed */
     const AcdfPartner* partner;     /* null: to be used alone */
     AcdfVisibilityTable visibility; /* its header is null where there are no visibility cells */
     AcdfPortalTable portals;        /* its header is null where there are none */
@@ -52,18 +52,18 @@ typedef struct AcdfLocalPoint {
     float surface[3]; /* the normal as given */
     double normal[3]; /* with the weights of the mixture: the weighted sum of its bins' corners */
     double length;    /* of that */
-    AcdfMixture mix;  /* of the blend; the weights are those that reach the place */
+    AcdfMixture mix;  /* of the blend; the weights are those that reach the position */
     const uint8_t* codes[ACDF_MAX_ROWS_MIXED]; /* the rows in the runtime tables, where there are such */
     const double* parts[ACDF_MAX_ROWS_MIXED];  /* what they give to each tile, where there are such */
-    const AcdfFacet* facet;             /* that of the normal in the runtime tables; null: they do not tell */
-    double bright_tiles;                /* sum of the weights of the bright tiles */
-    double sum;                         /* of all weights */
-    AcdfVisibilityMixture visibility;   /* empty: the position is not known, or does not matter */
-    AcdfVisiblePortals visible_portals; /* as the position sees them; its count is 0 where there are none */
-    AcdfFastMixture fast;               /* of the fast shape; `mix` has the weights, too */
-    double step;                        /* of the fast shape: 32767 times the mixture's whole a weight */
-    double unit;                        /* of the fast shape: that of acdf_fast_share, of `sum` */
-    uint32_t lit;                       /* of the fast shape: how many bright tiles the normal may see, by twos; */
+    const AcdfFacet* facet;                    /* that of the normal in the runtime tables; null: they have none */
+    double bright_tiles;                       /* sum of the weights of the bright tiles */
+    double sum;                                /* of all weights */
+    AcdfVisibilityMixture visibility;          /* empty: the position is not known, or does not matter */
+    AcdfVisiblePortals visible_portals;        /* as the position sees them; its count is 0 where there are none */
+    AcdfFastMixture fast;                      /* of the fast shape; `mix` has the weights, too */
+    double step;                               /* of the fast shape: 32767 times the mixture's whole a weight */
+    double unit;                               /* of the fast shape: that of acdf_fast_share, of `sum` */
+    uint32_t lit; /* of the fast shape: how many bright tiles the normal may see, by twos; */
     uint8_t pair[ACDF_MAX_BRIGHT_TILES / 2]; /* the number of each two, */
     double light[ACDF_MAX_BRIGHT_TILES];     /* their weights, */
     double light_end[ACDF_MAX_BRIGHT_TILES]; /* and the sums of these from the first one to each */

@@ -52,9 +52,9 @@ ACDF_INLINE double acdf_local_find_inside(const AcdfLocal* local, uint32_t tile,
 /* Where a direction lies, which does not depend on the shading point: it is looked for before that is made, where
  * both are new. */
 typedef struct AcdfLocalSpot {
-    const AcdfTilePiece* piece; /* by tables; null: they do not tell */
+    const AcdfTilePiece* piece; /* by tables; null: they have none */
     uint32_t square[2];
-    uint32_t tile; /* by tables, where they tell no piece */
+    uint32_t tile; /* by tables, where they have no piece */
     int valid;     /* 0: it is no direction */
 } AcdfLocalSpot;
 
@@ -184,7 +184,7 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
     return acdf_local_spot_pdf(local, point, direction, &spot);
 }
 
-/* The part of the pdf that follows the light: that of rows, and of windows where a position sees any. */
+/* The part of the pdf that follows the light: that of rows, and of portals where a position sees any. */
 ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     const float row = acdf_local_row_pdf(local, point, direction);
     return point->visible_portals.count > 0 ? acdf_visible_portals_pdf(&point->visible_portals, direction, row)
@@ -210,7 +210,7 @@ ACDF_FN float acdf_local_combined_pdf(const AcdfLocal* local, const AcdfLocalPoi
     return pdf > 1.17549435e-38 || pdf == 0.0 ? (float)pdf : 1.17549435e-38f;
 }
 
-/* acdf_local_pdf_at of any shape, with windows and the cosine; and where rows of the fast shape are all there is.
+/* acdf_local_pdf_at of any shape, with portals and the cosine; and where rows of the fast shape are all there is.
  * Each saves only the registers that it needs. */
 ACDF_OUTLINE_ON_CPU float acdf_local_any_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                 const float direction[3]) {

@@ -24,7 +24,7 @@ ACDF_INLINE void acdf_local_tabled_row(const AcdfLocal* local, uint32_t row, Acd
     if (tables->parts) out->parts[out->mix.count] = acdf_local_parts(tables, row, local->blend.tiles->tile_count);
 }
 
-/* Finds the rows of a normal within a triangle. Returns 0 where tables do not tell. */
+/* Finds the rows of a normal within a triangle. Returns 0 where tables have no answer. */
 ACDF_INLINE int acdf_local_table_rows(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     double weight[3], scale;
     const AcdfFacet* facet = acdf_local_find_facet(local, normal, weight, &scale);
@@ -105,7 +105,7 @@ ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLo
     if (acdf_local_begin(local, normal, out)) acdf_local_sum(local, 0, out);
 }
 
-/* Finds what serves a normal at a position of the scene by rows alone, whatever comes through windows. */
+/* Finds what serves a normal at a position of the scene by rows alone, whatever comes through portals. */
 ACDF_FN void acdf_local_at_cells(const AcdfLocal* local, const float position[3], const float normal[3],
                                  AcdfLocalPoint* out) {
     double visible, of_light[ACDF_MAX_BRIGHT_TILES];

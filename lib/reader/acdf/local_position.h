@@ -19,7 +19,7 @@ ACDF_INLINE int acdf_local_square(const AcdfGrid* grid, const float direction[3]
 }
 
 /* The direction that what is left of the random numbers picks in a cell. Returns 0, and leaves `out`, where tables
- * do not tell. */
+ * have no answer. */
 ACDF_INLINE int acdf_local_direction_by_tables(const AcdfLocal* local, const AcdfGrid* grid,
                                                const AcdfRange range[2], const double u[2], float out[3]) {
     if (!local->tables) return 0;

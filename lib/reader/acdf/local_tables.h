@@ -2,8 +2,8 @@
  * which cell of which tile holds a direction, and what each row gives to each tile. Made once at load
  * (acdf/reader.h); flat words without pointers, which a GPU takes as they lie.
  *
- * As those of an environment (acdf/cells.h) pieces only answer where it is sure that the walk finds the same cell,
- * and what they tell is the walk's to the bit. */
+ * As those of an environment (acdf/cells.h) pieces only answer where it is sure that the traversal finds the same
+ * cell, and their results are those of the traversal to the bit. */
 #ifndef ACDF_LOCAL_TABLES_H
 #define ACDF_LOCAL_TABLES_H
 
@@ -105,7 +105,7 @@ ACDF_INLINE const AcdfTileRecord* acdf_local_tile(const AcdfLocalTables* tables,
     return acdf_tile_record(acdf_local_words(tables), &tables->tiles, tile);
 }
 
-/* The piece that holds a direction; null where the tree must be walked. */
+/* The piece that holds a direction; null where the tree must be traversed. */
 ACDF_INLINE const AcdfTilePiece* acdf_local_find_piece(const AcdfLocalTables* tables, const float direction[3]) {
     const uint32_t* words = acdf_local_words(tables);
     const uint16_t* found;

@@ -5,7 +5,7 @@
  * sides of the portals, bent into a square, so that a portal is an upright rectangle of the map from wherever it is
  * seen: a *visible_portal* (Bitterli, Novak, Jarosz, "Portal-Masked Environment Map Sampling", EGSR 2015). A portal
  * is divided into pieces along its sides. Each is sampled as the light in it, times a cosine to the normal, times
- * how much of it the cells of the mixture see; then, in a piece, the map is followed. A share that the cells tell
+ * how much of it the cells of the mixture see; then, in a piece, the map is followed. A share that the cells store
  * is sampled by the row of the mixture: it covers all other light, and a scene that has changed.
  *
  * The map is bent by t / (1 + |t|), not by the arc tangent of that paper: cells are about as even, and no machine

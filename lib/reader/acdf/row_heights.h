@@ -1,4 +1,4 @@
-/* Grids in floats, where these are sure to tell what acdf/grid.h does: the square of a direction, and the
+/* Grids in floats, where these are sure to agree with acdf/grid.h: the square of a direction, and the
  * directions of cells, as acdf/cells.h samples them; on lat-long grids (acdf_row_...) by a table of the heights
  * between rows, and pdfs without trigonometry. Cells without tilts. */
 #ifndef ACDF_ROW_HEIGHTS_H
@@ -24,7 +24,7 @@ ACDF_INLINE float acdf_turn_float(float y, float x) {
     return copysignf((0.25f - 0.25f * east) + east * quarter, y);
 }
 
-/* Whether a place on an axis lies surely in the step that it is rounded down to. */
+/* Whether a position on an axis lies surely in the step that it is rounded down to. */
 ACDF_INLINE int acdf_sure_step(float place, float border, uint32_t* step) {
     const int32_t whole = (int32_t)place;
     const float inside = place - (float)whole;
@@ -46,7 +46,7 @@ ACDF_INLINE __m128 acdf_eighth_floats(__m128 q) {
     return _mm_mul_ps(root, _mm_add_ps(low, _mm_mul_ps(_mm_mul_ps(q2, q2), high)));
 }
 
-/* acdf_turn_float of points of which the squares of y and x are told, too; of y only the sign counts. */
+/* acdf_turn_float of points with the squares of y and x; of y only the sign counts. */
 ACDF_INLINE __m128 acdf_turn_floats(__m128 y, __m128 x, __m128 y2, __m128 x2) {
     const __m128 sign = _mm_set1_ps(-0.0f), one = _mm_set1_ps(1.0f);
     const __m128 level = _mm_or_ps(one, _mm_and_ps(sign, _mm_sub_ps(x2, y2)));
@@ -71,7 +71,7 @@ ACDF_INLINE int acdf_sure_steps(__m128 turn, __m128 steps, float border, uint32_
 }
 #endif
 
-/* acdf_sphere_square without where the direction lies. Returns 0 where floats do not tell: next to the borders of
+/* acdf_sphere_square without where the direction lies. Returns 0 where floats cannot decide: next to the borders of
  * squares and to the poles, for directions whose length differs from 1 by more than 5e-5 or that are not finite. */
 ACDF_INLINE int acdf_row_square(uint32_t columns, uint32_t rows, const float direction[3], uint32_t square[2]) {
     const float x = direction[0], y = direction[1], z = direction[2];

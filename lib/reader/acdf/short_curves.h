@@ -1,6 +1,6 @@
-/* Walks of trees whose curves are mostly short: eight segments at most, with positions and links in bytes. A
- * segment of such a curve is found without a loop or a branch on the data: which is where a walk of acdf/tree.h
- * waits. Cells, numbers and probabilities are those of that walk to the bit. */
+/* Traversals of trees whose curves are mostly short: eight segments at most, with positions and links in bytes. A
+ * segment of such a curve is found without a loop or a branch on the data: which is where a traversal of
+ * acdf/tree.h waits. Cells, numbers and probabilities are those of that traversal to the bit. */
 #ifndef ACDF_SHORT_CURVES_H
 #define ACDF_SHORT_CURVES_H
 
@@ -62,7 +62,7 @@ ACDF_INLINE __m128i acdf_short_curve_values(const AcdfShortCurve* curve) {
                               curve->inner);
 }
 
-/* The segment that a number below `maximum` samples; *low and *width as acdf_short_curve_width tells them. */
+/* The segment that a number below `maximum` samples; *low and *width as in acdf_short_curve_width. */
 ACDF_INLINE uint32_t acdf_short_curve_sampled(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
                                               uint32_t* width) {
     const __m128i values = acdf_short_curve_values(curve);
@@ -161,7 +161,7 @@ ACDF_INLINE uint32_t acdf_first_above(uint64_t bytes, uint32_t key, uint32_t las
 #endif
 }
 
-/* The bytes before and at a place; 0 before the first. */
+/* The bytes before and at a position; 0 before the first. */
 ACDF_FN uint32_t acdf_byte_before(uint64_t bytes, uint32_t shift) {
     return (uint32_t)(bytes << 8 >> shift) & 0xFFu;
 }
@@ -178,7 +178,7 @@ ACDF_INLINE uint32_t acdf_short_curve_width(const AcdfShortCurve* curve, uint32_
     return acdf_byte_at(curve->cumulative, segment) - *low;
 }
 
-/* The segment that a number below `maximum` samples; *low and *width as acdf_short_curve_width tells them. */
+/* The segment that a number below `maximum` samples; *low and *width as in acdf_short_curve_width. */
 ACDF_INLINE uint32_t acdf_short_curve_sampled(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
                                               uint32_t* width) {
     const uint32_t segment = acdf_first_above(curve->cumulative, number, curve->inner);

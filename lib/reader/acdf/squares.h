@@ -1,7 +1,7 @@
 /* Which cells may hold a point of a square: a grid whose entries name blocks of up to 16 boxes, found without a
  * branch on the data. Plain words that a GPU takes as they lie.
  *
- * The two keys of a point are integers. A block covers a rectangle that halving the square gives, and tells where
+ * The two keys of a point are integers. A block covers a rectangle that halving the square gives, and says where
  * in it each of its cells lies in steps of 1/256: what it names may hold the point, and one of them does. Whoever
  * asks looks at the cell itself. Where a rectangle as small as an entry of the grid has too many cells, a finer
  * grid of 8 x 8 entries takes its place. */
@@ -11,7 +11,7 @@
 #include <acdf/elementary.h>
 #include <acdf/layout.h>
 
-/* What is wanted next, on its way while its place is searched for. */
+/* What is wanted next, on its way while its position is searched for. */
 #if defined(__GNUC__) && !defined(__CUDACC__)
 #define ACDF_PREFETCH(address) __builtin_prefetch(address)
 #else
@@ -73,7 +73,7 @@ ACDF_INLINE uint32_t acdf_bytes_reach(uint32_t a, uint32_t b) {
     const uint32_t difference = (a | 0x80808080u) - (b & 0x7F7F7F7Fu);
     return (~a & b) | (~(a ^ b) & difference);
 }
-/* The same: whether each byte of a place lies from low to high. */
+/* The same: whether each byte of a position lies from low to high. */
 ACDF_INLINE uint32_t acdf_bytes_within(uint32_t place, uint32_t low, uint32_t high) {
     return acdf_bytes_reach(place, low) & acdf_bytes_reach(high, place);
 }
@@ -95,7 +95,7 @@ ACDF_INLINE uint32_t acdf_boxes_around(const uint32_t* boxes, uint32_t byte0, ui
 }
 
 #ifdef ACDF_SSE2
-/* Bit i: whether the i-th of sixteen boxes, in bytes less 128, holds the bytes of a place. */
+/* Bit i: whether the i-th of sixteen boxes, in bytes less 128, holds the bytes of a position. */
 ACDF_INLINE uint32_t acdf_boxes_by_vectors(__m128i low0, __m128i high0, __m128i low1, __m128i high1, uint32_t byte0,
                                            uint32_t byte1) {
     const __m128i at0 = _mm_set1_epi8((char)(byte0 ^ 0x80u)), at1 = _mm_set1_epi8((char)(byte1 ^ 0x80u));

@@ -1,6 +1,6 @@
 /* Runtime tables of table files (acdf/table.h): which cell holds a point, or deep down in which curve of its bin's
- * tree a point or random numbers lie. From there the tree is walked: what is sampled and told is the walk's to the
- * bit. Made once at load (acdf/reader.h); flat words without pointers, which a GPU takes as they lie.
+ * tree a point or random numbers lie. From there the tree is traversed: samples and pdfs are those of the traversal
+ * to the bit. Made once at load (acdf/reader.h); flat words without pointers, which a GPU takes as they lie.
  *
  * Each bin has a grid over the positions of its sampled axes and one over their random numbers. An entry of the
  * first is a cell that holds all of it, or the deepest curve that does; of the other one always a curve. What a
@@ -40,7 +40,7 @@ typedef struct AcdfEntryAxis {
 
 /* Offsets in words from the start of AcdfEntries. */
 typedef struct AcdfEntryBin {
-    uint32_t positions, numbers;       /* u32 each; 0: the tree is walked from its root */
+    uint32_t positions, numbers;       /* u32 each; 0: the tree is traversed from its root */
     AcdfEntryAxis axes[ACDF_MAX_AXES]; /* of the sampled ones, from 0 */
 } AcdfEntryBin;
 
@@ -51,7 +51,7 @@ typedef struct AcdfEntries {
     uint32_t curves;      /* AcdfEntryCurve */
     uint32_t curve_words; /* from one to the next */
     uint32_t steps;       /* AcdfEntryStep */
-    uint32_t densities;   /* f64: of each cell, as acdf_table_cell_pdf tells it */
+    uint32_t densities;   /* f64: of each cell, as acdf_table_cell_pdf returns it */
     uint32_t reserved[10];
 } AcdfEntries;
 ACDF_STATIC_ASSERT(sizeof(AcdfEntries) % 64 == 0); /* arrays are aligned */

@@ -1,6 +1,6 @@
 /* Which tile holds a square: a grid whose entries are tiles, or name blocks of 4 x 4 finer ones, whose entries may
- * name blocks again. Part of the runtime tables of the fast shape (acdf/fast.h); flat words without pointers. What
- * it tells is what the walk of the splits finds. */
+ * name blocks again. Part of the runtime tables of the fast shape (acdf/fast.h); flat words without pointers. Its
+ * results are those of the traversal of the splits. */
 #ifndef ACDF_TILE_BLOCKS_H
 #define ACDF_TILE_BLOCKS_H
 
@@ -14,16 +14,16 @@ enum { ACDF_TILE_BLOCK_LEVELS = 3 };
 
 /* Offsets are in words, from the start of all tables. */
 typedef struct AcdfTileBlocks {
-    uint32_t grid;   /* u16: a tile with ACDF_TILE_FLAG, or a block */
-    uint32_t blocks; /* u16, 16 of each block: the same; at the last level a split of the file from which to walk in
-                        place of a block */
-    uint32_t levels; /* of blocks, 1 to ACDF_TILE_BLOCK_LEVELS */
-    uint32_t shift[2];                        /* bits of positions that are finer than the grid */
+    uint32_t grid;     /* u16: a tile with ACDF_TILE_FLAG, or a block */
+    uint32_t blocks;   /* u16, 16 of each block: the same; at the last level a split of the file from which to
+                          traverse in   place of a block */
+    uint32_t levels;   /* of blocks, 1 to ACDF_TILE_BLOCK_LEVELS */
+    uint32_t shift[2]; /* bits of positions that are finer than the grid */
     uint32_t fine[ACDF_TILE_BLOCK_LEVELS][2]; /* than the blocks of each level */
     uint32_t bits0; /* the grid has 2^bits0 entries along axis 0, which are next to each other */
 } AcdfTileBlocks;
 
-/* The tile of a square, or the split to walk from. No branch on the data: where the tile is told already, some
+/* The tile of a square, or the split to traverse from. No branch on the data: where the tile is known already, some
  * block is looked at in vain. */
 ACDF_INLINE uint32_t acdf_tile_block_at(const uint32_t* words, const AcdfTileBlocks* tables,
                                         const uint32_t* square) {

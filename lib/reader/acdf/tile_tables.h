@@ -1,9 +1,9 @@
 /* Runtime tables of boxes that rows share (acdf/blend.h): which tile holds a square, the way to each tile, and what
  * codes stand for. Flat words without pointers, which a GPU takes as they lie.
  *
- * What they tell of a square is what the walk of the splits finds, to the bit. A sample is the walk's but for the
- * rounding of the numbers that are left of it: what the rows give to the two halves of a split is summed in another
- * order, so that a number next to a border may fall to its other side. */
+ * Their results for a square are those of the traversal of the splits, to the bit. A sample is that of the
+ * traversal but for the rounding of the numbers that are left of it: what the rows give to the two halves of a
+ * split is summed in another order, so that a number next to a border may fall to its other side. */
 #ifndef ACDF_TILE_TABLES_H
 #define ACDF_TILE_TABLES_H
 
@@ -30,8 +30,8 @@ typedef struct AcdfTileRecord {
 ACDF_STATIC_ASSERT(sizeof(AcdfTileRecord) == 64);
 
 /* Offsets are in words, from the start of all tables. Splits are numbered anew: those of the upper levels stand in
- * one cache line of a row, those below them line by line. Files of the fast shape, whose splits nothing walks by
- * tables, have `tiles` alone. */
+ * one cache line of a row, those below them line by line. Files of the fast shape, whose splits are not traversed
+ * by tables, have `tiles` alone. */
 typedef struct AcdfTileTables {
     uint32_t codes;    /* f64, 256 pairs: what parts a code gives to the lower and to the upper half of a split */
     uint32_t splits;   /* AcdfSplit, `stride` of them; some are none */
@@ -99,8 +99,8 @@ ACDF_INLINE void acdf_tile_follow(const double* codes, const uint8_t* const* row
     }
 }
 
-/* What a mixture gives to a tile, of all that it gives: the products of acdf_blend_find_rows from step `first` on.
- * Tiles below a horizon are mostly told by the upper splits, so that the rest of their rows is not waited for. */
+/* The share of a mixture that reaches a tile: the products of acdf_blend_find_rows from step `first` on.
+ * Tiles below a horizon are mostly found by the upper splits, so that the rest of their rows is not waited for. */
 ACDF_INLINE double acdf_tile_share_rows(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
                                         const uint8_t* const* row, const int rows, const AcdfTileRecord* tile,
                                         uint32_t first) {
@@ -119,7 +119,7 @@ ACDF_INLINE double acdf_tile_share_rows(const uint32_t* words, const AcdfTileTab
     return acdf_mixture_of(mix, rows, part);
 }
 
-/* A walk of the splits on the way to a tile, as acdf_blend_sample_rows has it, of random numbers that are told as
+/* A traversal of the splits on the way to a tile, as in acdf_blend_sample_rows, by random numbers that are given as
  * what x they are of all that the mixture gives. No branch depends on what is sampled but where the way ends. Rows
  * are as many as in all three functions. */
 #ifdef ACDF_SSE2

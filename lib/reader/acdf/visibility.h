@@ -229,8 +229,8 @@ ACDF_INLINE uint32_t acdf_visibility_find_rows(const AcdfVisibilityTable* table,
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* The walks for as many rows of normals and of visibility as there are, each known to the compiler where that is
- * usual.
+/* The traversals for as many rows of normals and of visibility as there are, each known to the compiler where that
+ * is usual.
  */
 #define ACDF_VISIBILITY_WALK(rows, visibility)                                                                     \
     if (mix->count == (rows) && mixture->count == (visibility)) return ACDF_VISIBILITY_CALL(rows, visibility)

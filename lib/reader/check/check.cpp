@@ -117,7 +117,7 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
 constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_TREE};
 constexpr u32 required_beside_halvings = 1; // the first of them
 
-// Whether a known chunk has a place in files of a kind.
+// Whether a known chunk may be in files of a kind.
 bool belongs(int known, u32 kind) {
     if (known == chunk_local || known == chunk_visibility || known == chunk_portals || known == chunk_sums ||
         known == chunk_grid)

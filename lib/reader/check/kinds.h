@@ -16,7 +16,7 @@ struct TileBoxes {
     TileBox* of = nullptr;
     bool given = false; ///< there is a TILE, right or wrong
     bool fast = false;  ///< of the fast shape: roots are no offsets in TREE
-    Payload roots;      ///< the part of TILE that tells the roots of tiles
+    Payload roots;      ///< the part of TILE with the roots of tiles
 
     TileBoxes() = default;
     TileBoxes(const TileBoxes&) = delete;

@@ -170,7 +170,7 @@ void check_local_kind(const Payload& description, const Payload& payload, const 
         report.add(7005, payload.at(0), "`cosine_share` is %g", static_cast<double>(header->cosine_share));
     parts.local = header;
     parts.bright_tiles = reinterpret_cast<const AcdfBrightTile*>(payload.data + sizeof *header);
-    if (parts.tiles || !boxes.given) check_bright_tiles(payload, boxes, report, parts); // else told of TILE
+    if (parts.tiles || !boxes.given) check_bright_tiles(payload, boxes, report, parts); // else reported for TILE
     if (report.verdict().errors != errors) return;
     if (parts.rows) check_bright_tile_rows<DarkBySplits>(payload, report, parts);
     if (parts.fast.grid) check_bright_tile_rows<DarkBySums>(payload, report, parts);

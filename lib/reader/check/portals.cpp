@@ -75,7 +75,7 @@ bool are_sums(const u32* sums, u32 size) {
 
 void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept {
     if (!parts.visibility.header) {
-        // Visibility that are wrong are told elsewhere.
+        // Errors of visibility cells are reported elsewhere.
         if (report.verdict().errors == 0)
             report.add(7016, payload.at(0), "there are portals, but no visibility cells");
         return;

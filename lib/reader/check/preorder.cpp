@@ -96,7 +96,7 @@ bool tilts_are_right(const AcdfCurve& curve) {
     return true;
 }
 
-// What check_curve tells of the short curves that end, which most are.
+// What check_curve reports of short curves that end, which most are.
 struct Short {
     u32 axis, knot; ///< the last one, counted from the range's low end
     u32 next;       ///< where the next curve begins

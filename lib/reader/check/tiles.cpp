@@ -14,7 +14,7 @@ using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using ull = unsigned long long;
 
-// A split's part that has not been walked yet.
+// A split's part that has not been visited yet.
 struct OpenTile {
     u32 node;  // a child as stored
     u32 depth; // splits above it
@@ -71,7 +71,8 @@ bool split_box(const Tiles& tiles, u32 index, const TileBox& box, TileBox part[2
     return true;
 }
 
-// Walks the splits in preorder; `open` has room for all of them. True where each is met in its turn, and each tile.
+// Visits the splits in preorder; `open` has room for all of them. True where each is met in its turn, and each
+// tile.
 bool walk(const Tiles& tiles, const TileBox& whole, OpenTile* open, TileBox* boxes, Report& report) {
     u32 next_split = 0, next_tile = 0, count = 0;
     open[count++] = {tiles.header.tile_count > 1 ? 0 : ACDF_TILE_FLAG, 0, whole};
@@ -111,7 +112,7 @@ bool walk(const Tiles& tiles, const TileBox& whole, OpenTile* open, TileBox* box
 }
 
 bool find_boxes(const Tiles& tiles, const Parts& parts, TileBoxes& boxes, Report& report) {
-    if (parts.description->axis_count < 2) return false; // no file with tiles has so few: told elsewhere
+    if (parts.description->axis_count < 2) return false; // no file with tiles has so few: reported elsewhere
     const TileBox whole{{0, 0}, {parts.axes[0].resolution, parts.axes[1].resolution}};
     const u64 count = tiles.header.tile_count;
     boxes.of = static_cast<TileBox*>(std::malloc(count * sizeof(TileBox)));

@@ -1,4 +1,4 @@
-// The distribution itself: BINS and TREE. Linear in their bytes: the curves are walked in file order, which
+// The distribution itself: BINS and TREE. Linear in their bytes: the curves are visited in file order, which
 // comes after every path that leads to them because links only go forward.
 #include "check/tree_roots.h"
 
@@ -196,8 +196,8 @@ void check_segments(const Tree& tree, u32 unit, const AcdfCurve& curve, Report& 
     }
 }
 
-// A wrong root or link leaves curves unreached: that is told once, there. Depth is counted up to one past the
-// limit: what lies deeper is not told again.
+// A wrong root or link leaves curves unreached: that is reported once, there. Depth is counted up to one past the
+// limit: what lies deeper is not reported again.
 void check_reach(const Tree& tree, u32 unit, Report& report) {
     u32& b = tree.mark(unit).b;
     const u32 depth = b & 0xFFFF;
@@ -220,7 +220,7 @@ void check_curves(const Tree& tree, Report& report) {
 // ---- third pass, once an axis: knots inside what is inherited -------------------------------------------
 // Over all paths to a curve, Mark::a is the largest low end and Mark::b the smallest high end: a knot lies inside
 // every path's range if it lies between them. Positions are below 2^31 (rule 5014), so the highest bit of Mark::a
-// is free: it tells that paths disagree on the low end, which positions that are counted from it must not.
+// is free: it marks that paths disagree on the low end, which positions that are counted from it must not.
 
 constexpr u32 disagree = 0x80000000;
 

@@ -26,7 +26,7 @@ struct CheckedTree {
 struct TreeRoot {
     std::uint32_t unit;
     const TileBox* box;  ///< null: everything
-    std::uint64_t at;    ///< the place in the file that says so
+    std::uint64_t at;    ///< the offset in the file that says so
     std::uint32_t index; ///< of the bin or tile
 };
 

@@ -1,4 +1,4 @@
-// What of the light reaches a place: PLAC. Linear in its bytes.
+// How much of the light reaches a position: PLAC. Linear in its bytes.
 #include "check/kinds.h"
 
 #include <cmath>
@@ -51,7 +51,7 @@ void check_bounds(const Payload& payload, const AcdfVisibility& h, Report& repor
     }
 }
 
-// Walks the splits in preorder. A path's upper parts wait on a stack as deep as paths may be.
+// Visits the splits in preorder. A path's upper parts wait on a stack as deep as paths may be.
 bool check_splits(const Payload& payload, const AcdfVisibility& h, const AcdfVisibilitySplit* splits,
                   Report& report) {
     struct Open {
@@ -125,7 +125,7 @@ void check_odds(const Payload& payload, const AcdfVisibilityTable& table, u32 ti
 } // namespace
 
 void check_visibility(const Payload& payload, Report& report, Parts& parts) noexcept {
-    if (!parts.local) return; // told elsewhere
+    if (!parts.local) return; // reported elsewhere
     if (!parts.tiles) {
         report.add(7009, payload.at(0), "there are visibility cells, but no tiles");
         return;

@@ -1,4 +1,4 @@
-// Grids over the positions of the axes whose entries tell what the splits of tiles lead to.
+// Grids over the positions of the axes whose entries say what the splits of tiles lead to.
 #pragma once
 
 #include <acdf/blend.h>

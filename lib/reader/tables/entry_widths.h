@@ -1,4 +1,4 @@
-// How wide the cells of table files are, which tells how fine grids over them are to be (acdf/table_entries.h).
+// How wide the cells of table files are, which decides how fine the grids over them are (acdf/table_entries.h).
 #pragma once
 
 #include "tables/tree_survey.h"
@@ -17,7 +17,7 @@ struct EntryWidths {
     double place[ACDF_MAX_AXES] = {}, number[ACDF_MAX_AXES] = {};
     std::size_t cells = 0;
 
-    /// What such a sum tells of cells becomes parts as small as logarithms tell.
+    /// Turns such a sum over cells into parts as small as logarithms resolve.
     void divide(std::uint32_t axis, double sum) noexcept {
         place[axis] -= sum;
         number[axis] -= sum;

@@ -1,4 +1,4 @@
-// An array that grows without exceptions. Memory that is not to be had is told by `failed`; what is added then is
+// An array that grows without exceptions. `failed` says that memory could not be had; what is added then is
 // lost.
 #pragma once
 

@@ -20,7 +20,7 @@ namespace {
 
 using u32 = std::uint32_t;
 
-// Of pieces and parts: where they are larger, calls would wait for memory longer than the walk takes.
+// Of pieces and parts: where they are larger, calls would wait for memory longer than the traversal takes.
 constexpr std::size_t kMostBytes = std::size_t{3} << 20;
 
 class PiecesMaker {
@@ -79,7 +79,7 @@ bool PiecesMaker::gather(u32 node, const Cell& box) {
 }
 
 // False where there are too many cells, or more than the file has bytes, as curves may be shared. Those with tilts
-// are left to the walk.
+// are left to the traversal.
 bool PiecesMaker::add(const Cell& cell, u32 tile) {
     if (++cells_ > most_cells_) return false;
     if (cell.tilted) return true;
@@ -142,7 +142,7 @@ void PiecesMaker::add_parts(const std::uint8_t* row, u32 node, double product, d
     out[node & ~ACDF_TILE_FLAG] = product;
 }
 
-constexpr u32 kMostSubdivisions = 32; // of an octahedron whose triangles are told in a table
+constexpr u32 kMostSubdivisions = 32; // of an octahedron whose triangles are stored in a table
 
 constexpr double kFacetMargin = 0x1p-6; // of a length: so far from a horizon sums lose no more than that
 

@@ -12,7 +12,7 @@
 
 namespace acdf {
 
-/// A cell as the walk of a tree finds it.
+/// A cell as the traversal of a tree finds it.
 struct Cell {
     double probability;
     double low[2], high[2];          ///< random numbers

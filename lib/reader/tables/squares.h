@@ -75,7 +75,7 @@ private:
         std::uint32_t bits[2], shift[2];
         std::size_t number; ///< 0: the coarsest; else that of the finer grid, and 1
     };
-    /// Where the boxes of a list were written: sides are told from its origin, in steps of 2^shift keys.
+    /// Where the boxes of a list were written: sides are counted from its origin, in steps of 2^shift keys.
     struct Frame {
         std::uint32_t origin[2], shift[2];
     };

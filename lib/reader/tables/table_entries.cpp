@@ -15,7 +15,7 @@ namespace {
 
 using u32 = std::uint32_t;
 
-constexpr u32 kFewestBinCells = 16;        // of a bin whose tree is not walked from its root
+constexpr u32 kFewestBinCells = 16;        // of a bin whose tree is not traversed from its root
 constexpr double kEntriesACell = 8.0;      // of each grid, at most
 constexpr double kNumberEntries = 0x1p16;  // at most: samples wait for memory as long as more of them save
 constexpr u32 kMostEntryBits = 12;         // of entries along an axis

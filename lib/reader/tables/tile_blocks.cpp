@@ -1,4 +1,4 @@
-// Divides the square by the splits, as finely as grid and blocks tell apart.
+// Divides the square by the splits, as finely as grid and blocks resolve.
 #include "tables/tile_blocks.h"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ bool TileBlocksMaker::fill(const Entries& all, u32 levels) noexcept {
     return !blocks_.failed();
 }
 
-// What an entry tells: the tile that holds it, or a block for what a split cuts; behind the last level that split.
+// An entry: the tile that holds it, or a block for what a split cuts; behind the last level that split.
 u32 TileBlocksMaker::finer(u32 node, const Entry& entry, u32 level) {
     if (node & ACDF_TILE_FLAG || level == tables_.levels || overflows_) return node;
     const AcdfSplit& split = blend_.splits[node];

@@ -104,7 +104,7 @@ void TileTablesMaker::fill(u32 node, const Entries& entries) {
 
 std::size_t TileTablesMaker::stride() const noexcept { return (used_ + kLine - 1) / kLine * kLine; }
 
-// With a line more: instead of a split below a tile a walk looks at any other.
+// With a line more: instead of a split below a tile a traversal looks at any other.
 std::size_t TileTablesMaker::row_words() const noexcept {
     return used_ > 0 && blend_.rows ? (blend_.tiles->row_count * stride() + kLine) / 4 : 0;
 }

@@ -13,7 +13,7 @@ namespace acdf {
 
 class TileTablesMaker {
 public:
-    /// Positions on the axes run to columns and rows. Where nothing walks the splits there are records of tiles
+    /// Positions on the axes run to columns and rows. Where the splits are not traversed there are records of tiles
     /// alone, without the way to them.
     TileTablesMaker(const AcdfBlend& blend, std::uint32_t columns, std::uint32_t rows, bool walked) noexcept;
 

@@ -13,7 +13,7 @@ namespace acdf {
 /// Of the trees of an environment or a table.
 class TreeSurvey {
 public:
-    /// More cells below a curve than are told apart.
+    /// More cells below a curve than are distinguished.
     static constexpr std::uint32_t kMany = 65535;
 
     /// Of no tree.
@@ -21,7 +21,7 @@ public:
     /// Of a tree that takes `tree_units`. The work is linear in them.
     TreeSurvey(const AcdfEnvironment& environment, std::uint32_t tree_units) noexcept;
 
-    /// Whether there are no tilts, curves are not shared so often that walking them all is more work than in
+    /// Whether there are no tilts, curves are not shared so often that visiting them all is more work than in
     /// proportion to the tree, and memory did not fail. Else nothing below is known.
     bool done() const noexcept { return done_; }
     /// Twice the units of the tree, and some.
@@ -35,7 +35,7 @@ public:
 
     // Who passes all curves, anyway, makes the survey so: begin(), add() for each that does not end, and end().
 
-    /// Whether a curve has neither children nor tilts, and as few segments as the header tells.
+    /// Whether a curve has neither children nor tilts, and as few segments as the header holds.
     static bool ends(std::uint32_t header) noexcept {
         return header >> ACDF_CURVE_SEGMENTS_SHIFT != 0 && ACDF_CURVE_LINK_CODE(header) == 0 &&
                !(header & ACDF_CURVE_TILTED);

@@ -15,7 +15,7 @@ namespace {
 
 using u32 = std::uint32_t;
 
-// What a file samples from, if it is one that can be walked.
+// What a file samples from, if it is one that can be traversed.
 AcdfLocal local_of(const File& file) {
     AcdfLocal local = {};
     if (file.kind() == ACDF_KIND_LOCAL) return file.local().data();
@@ -258,7 +258,8 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     u32* const out = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
     const float scale = unit();
     std::size_t at = ACDF_WALK_HEADER_WORDS + (local_.fast.grid ? WalkTiles::header_words : 0);
-    const auto place = [&](u32 header, const void* from, std::size_t bytes) { // where there is none, its place is 0
+    const auto place = [&](u32 header, const void* from,
+                           std::size_t bytes) { // where there is none, its offset is 0
         if (bytes == 0) return;
         out[header] = static_cast<u32>(at);
         std::memcpy(out + at, from, bytes);

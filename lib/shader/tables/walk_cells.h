@@ -24,7 +24,7 @@ inline std::uint32_t float_bits(double x) { return acdf_float_bits(static_cast<f
 /// The chance of a node whose parts share lower + upper.
 std::uint32_t chance_of(double lower, double upper) noexcept;
 
-/// What walks pass, and where they end.
+/// What traversals pass, and where they end.
 class WalkParts {
 public:
     std::uint32_t add(const WalkNode& node) noexcept;

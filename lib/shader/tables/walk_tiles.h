@@ -17,7 +17,7 @@ public:
     bool make(const AcdfLocal& local) noexcept;
     /// Of all; the header stands behind that of trees.
     std::size_t words() const noexcept { return words_; }
-    /// Writes the header, and what it tells of from word `at` on.
+    /// Writes the header, and what it refers to from word `at` on.
     void place(const AcdfLocal& local, std::uint32_t* words, std::size_t at) const noexcept;
 
 private:

@@ -26,7 +26,7 @@ typedef struct z_stream_s {
 #define inflateEnd(stream) ((void)(stream), Z_OK)
 
 /* Inflates a zlib stream (RFC 1950). Z_STREAM_END; or Z_BUF_ERROR where the room is full, Z_DATA_ERROR where the
- * stream is damaged or ends early. What was read and written is told as zlib does. */
+ * stream is damaged or ends early. The counts of bytes read and written are set as by zlib. */
 int inflate(z_stream* stream, int flush);
 
 /* CRC-32 of `size` bytes after those whose CRC-32 is `crc`. */

@@ -39,7 +39,7 @@ public:
             if (i % 31 == 5) wo_[3 * i + i % 3] = not_a_direction(random());
             if (i % 37 == 6) direction(&wo_[3 * i], 1.0, 0.0);
             if (i % 41 == 7) direction(&wo_[3 * i], 1e-6, 3.0);
-            // Half of wi are drawn, so that they are where pdfs are large.
+            // Half of wi are sampled, so that they are where pdfs are large.
             const acdf::DirectionSample s = view.sample(wo()[i], u()[i][0], u()[i][1]);
             if (i % 2 == 0 && s.pdf > 0.0f) std::memcpy(&wi_[3 * i], s.direction, sizeof s.direction);
             else direction(&wi_[3 * i], 2.0 * uniform(random) - 1.0, 7.0 * uniform(random));

@@ -1,4 +1,4 @@
-// Accuracy on real BRDFs: what the documentation tells must hold.
+// Accuracy on real BRDFs: the figures of the documentation must hold.
 #include "tests/lib/build/real_brdfs.h"
 
 #include "input/brdf/rgl.h"

@@ -12,7 +12,7 @@ using namespace acdf_test;
 
 namespace {
 
-/// Reflects as much at the horizon as measured materials are told to: rho cos does not fall to 0 there.
+/// Reflects as much at the horizon as measured materials do: rho cos does not fall to 0 there.
 class BrightHorizon : public acdf::build::Brdf {
 public:
     BrightHorizon() {

@@ -227,7 +227,7 @@ TEST(LocalFiles, TreesOfTheirOwnCoverAllNormalsOfABin) {
     }
 }
 
-// Linear pdfs: what is measured is what the reader tells at many points of each texel.
+// Linear pdfs: measured sums agree with the reader's pdfs at many points of each texel.
 TEST(LocalFiles, TiltedCurvesAreMeasured) {
     constexpr std::uint32_t kParts = 2; // of a quarter of a texel
     for (const double share : {0.0, 0.25}) {

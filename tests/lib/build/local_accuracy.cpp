@@ -31,7 +31,7 @@ struct Lookup {
         const auto c = static_cast<std::size_t>(column + columns) % columns;
         return double{rgb[(r * columns + c) * 3 + channel]};
     }
-    /// At a place in the map, in texels.
+    /// At a position in the map, in texels.
     double operator()(std::size_t channel, double x, double y) const {
         if (filter == ACDF_FILTER_NEAREST) return texel(channel, std::floor(x), std::floor(y));
         const double c = std::floor(x - 0.5), r = std::floor(y - 0.5), s = x - 0.5 - c, t = y - 0.5 - r;

@@ -114,8 +114,8 @@ TEST_F(LocalProbes, OneMegabyte) {
     EXPECT_GE(std::exp(sum / std::size(kProbes)), 100.0);
 }
 
-// Large soft boxes, too many for lights, and normals that get an 80th of the brightest one's light: most of theirs
-// is at the horizon.
+// Large soft boxes, too many for bright tiles, and normals that get an 80th of the brightest one's light: most of
+// theirs is at the horizon.
 TEST_F(LocalProbes, SoftBoxesAtTheHorizon) {
     const Probe probe = {"studio_small_05_1k.hdr", input::Projection::latlong};
     const build::Local local = built(probe, 1000000);

@@ -213,7 +213,7 @@ TEST(VisibilityFiles, FillTheirBudget) {
     EXPECT_FALSE(plain().view().has_visibility());
 }
 
-/// What cannot be had is told in bytes of the whole file.
+/// A size that cannot be had is reported in bytes of the whole file.
 TEST(VisibilityFiles, AreNotMadeLargerThanTheirBudget) {
     builder::Local result;
     const builder::Status status = builder::local(target(), with_visibility(4 << 10), result);
@@ -227,13 +227,13 @@ TEST(VisibilityFiles, AreNotMadeLargerThanTheirBudget) {
     EXPECT_TRUE(built.view().has_visibility());
 }
 
-/// Floats tell no margin around a floor that is flat and far away.
+/// Floats have no room for a margin around a floor that is flat and far away.
 TEST(VisibilityFiles, OfAFloorFarFromTheOrigin) {
     builder::LocalOptions far = with_visibility(16 << 10);
     far.visibility.point = [](std::uint64_t index, VisibilityPoint& point) {
         point_of(index, point);
         point = {{point.position[0], point.position[1], 1e7f}, {0.0f, 0.0f, 1.0f}};
-        if (index % 5 == 0) point.position[2] = 3e38f; // no place is so far out
+        if (index % 5 == 0) point.position[2] = 3e38f; // no position is so far out
         return true;
     };
     far.visibility.occluded = [](const VisibilityPoint&, const float*) { return false; };

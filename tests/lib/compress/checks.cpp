@@ -216,7 +216,7 @@ struct Agreement {
     }
 };
 
-/// The texel that a place lies in.
+/// The texel that a position lies in.
 std::size_t texel_of(const Where& place, const Target& target) {
     return step_of(place.row, target.rows) * target.columns + step_of(place.column, target.columns);
 }
@@ -237,7 +237,7 @@ void check_samples(const EnvironmentView& view, const CellMap& map, const Target
                   step_of(place.column / target.columns * kPhiBins, kPhiBins)];
         estimate += double{target.values[texel]} / sample.pdf / kSamples;
     }
-    // How near a tilted cell's darkest edge samples come; `far` tells whether rounding explains what is seen there.
+    // How near a tilted cell's darkest edge samples come; `far` says whether rounding explains what is seen there.
     EXPECT_LE(agreement.worst, target.parameterization == ACDF_PARAM_OCTAHEDRAL ? 2e-4 : 1e-4);
     for (const double u0 : {0.0, 0.5, 1.0}) // at a cell's darkest edge rounding shows most
         for (const double u1 : {0.0, 0.5, 1.0}) {

@@ -1,4 +1,4 @@
-// RapidCheck samples its cases from the clock unless told otherwise; tests must not. RC_PARAMS still overrides.
+// RapidCheck samples its cases from the clock by default; tests must not. RC_PARAMS still overrides.
 #include <cstdlib>
 
 namespace {

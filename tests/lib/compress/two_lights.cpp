@@ -91,7 +91,7 @@ TEST_P(TwoLights, WithoutGradientTheConditionalIsWrongOverBD) {
 TEST_P(TwoLights, WithGradientKnotsItIsRight) {
     store_fit(paper(3, 0));
     const double half = pdf(kB + 2, kLow[0] + 1);
-    store_fit(paper(3, 1)); // the steepest place: C
+    store_fit(paper(3, 1)); // the steepest region: C
     EXPECT_EQ(cascade_.curves[0].knots, (std::vector<std::uint32_t>{kB, kC, kD}));
     EXPECT_LT(relative_variance(), 1e-6);
     EXPECT_NEAR(pdf(kB + 2, kLow[0] + 1) / half, 2.0, 1e-3);

@@ -46,7 +46,7 @@ std::vector<double> taken_near(const AcdfBrdf& brdf, int axis, double position, 
     return out;
 }
 
-/// Whether a pdf is that of a cell near a direction: as near as floats tell half-vectors.
+/// Whether a pdf is that of a cell near a direction: as near as floats resolve half-vectors.
 bool is_near(const AcdfBrdf& brdf, const AcdfBrdfView& view, const float wi[3], float pdf) {
     AcdfBrdfPosition place;
     double sign, half[3];

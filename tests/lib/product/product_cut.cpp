@@ -102,7 +102,7 @@ TEST(ProductCut, NumbersDrawThePartThatHoldsThem) {
     }
 }
 
-// Shares as a walk of the splits gives them, from the whole to a part.
+// Shares as a traversal of the splits gives them, from the whole to a part.
 TEST(ProductCut, SplitsShareNumbers) {
     for (std::uint32_t seed = 0; seed < 100; ++seed) {
         SCOPED_TRACE(seed);

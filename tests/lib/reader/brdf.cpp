@@ -211,7 +211,7 @@ TEST(BrdfReader, nearlyOppositeDirectionsHaveADensity) {
     }
 }
 
-// Bins of share 0: what is sampled is what the pdf tells, the part of the cosine and nothing else.
+// Bins of share 0: samples follow the pdf: the part of the cosine and nothing else.
 TEST(BrdfReader, viewsWithoutATableDrawThePartOfTheCosine) {
     BrdfSpec spec = shared_brdf();
     spec.diffuse_share = 0.25f;

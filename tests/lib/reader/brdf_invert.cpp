@@ -1,4 +1,4 @@
-// The random numbers that acdf_brdf_invert tells sample the direction that it was given.
+// The random numbers that acdf_brdf_invert returns sample the direction that it was given.
 #include "tests/lib/reader/brdf_forms.h"
 #include "tests/lib/reader/brdf_loaded.h"
 #include "tests/lib/reader/half_vectors.h"
@@ -27,7 +27,7 @@ protected:
     /// Half of them nearly along the surface: there directions may be nearly opposite.
     Direction some_wo(int i) { return at_angles(i % 2 ? std::exp(-16.0 * uniform()) : uniform()); }
 
-    /// What invert promises of a direction, and that it tells numbers where there is a pdf.
+    /// What invert promises of a direction, and that it returns numbers where there is a pdf.
     void expect_back(const Direction& wo, const Direction& wi) {
         double u[2];
         const float p = view_.pdf(wo.data(), wi.data());
@@ -52,7 +52,7 @@ protected:
         const double change = std::fabs(there.length * halves.dot / (there.dot * halves.length) - 1.0);
         ASSERT_NEAR(back.pdf, p, (1e-4 + change) * double(p)) << u[0] << " " << u[1];
     }
-    /// How many directions floats tell across the cell of wi, or fewer.
+    /// How many directions floats resolve across the cell of wi, or fewer.
     double room(const Direction& wo, const Direction& wi) const {
         const AcdfBrdf& brdf = view_.data();
         AcdfBrdfView at = {};
@@ -98,7 +98,7 @@ TEST_P(BrdfInvert, drawsAnyDirection) {
     EXPECT_LE(moved_, all_ / 100);
 }
 
-// Nearer than floats tell: a sample that would come to lie beyond the border is moved by a part of its cell.
+// Nearer than floats resolve: a sample that would come to lie beyond the border is moved by a part of its cell.
 TEST_P(BrdfInvert, drawsDirectionsAtTheBordersOfCells) {
     const AcdfBrdf& brdf = view_.data();
     for (std::size_t n = 0; n < 40 * std::min<std::size_t>(spec_.splits.size(), 100); ++n) {

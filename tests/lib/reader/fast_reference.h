@@ -83,7 +83,7 @@ private:
         find_box(tile_count > 1 ? 0 : 0x8000, tile, counted, cell);
         return cell;
     }
-    // Counts tiles in the order of the walk until the one is met; then its box is in `cell`.
+    // Counts tiles in the order of the traversal until the one is met; then its box is in `cell`.
     bool find_box(std::size_t node, std::size_t tile, std::size_t& counted, Cell& cell) const {
         if (node >= 0x8000) return counted++ == tile;
         const Split s = split(node);

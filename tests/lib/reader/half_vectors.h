@@ -1,4 +1,4 @@
-// How nearly floats tell pdfs of a BRDF.
+// How exactly floats resolve pdfs of a BRDF.
 #pragma once
 
 #include <cmath>

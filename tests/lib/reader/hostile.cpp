@@ -303,7 +303,7 @@ TEST_P(Work, isLinearInTheBytes) {
     EXPECT_LT(much, 60 * large.size());
 }
 
-// n segments of which all but one have a probability of 2^-32: cells that no grid tells apart.
+// n segments of which all but one have a probability of 2^-32: cells that no grid distinguishes.
 EnvironmentSpec thin_cells(int n) {
     EnvironmentSpec spec;
     spec.columns = static_cast<std::uint32_t>(n);

@@ -96,7 +96,7 @@ TEST(LocalView, agreesWithTheSlowDecoder) {
             const float rounded[3] = {static_cast<float>(sine * std::cos(phi)),
                                       static_cast<float>(sine * std::sin(phi)), static_cast<float>(z)};
             float f[3];
-            acdf_as_given(rounded, f); // else gcc 12 may tell the reference what was rounded
+            acdf_as_given(rounded, f); // else gcc 12 may use the unrounded value for the reference
             const double expected = reference.pdf(normal.exact(), {double{f[0]}, double{f[1]}, double{f[2]}});
             ASSERT_NEAR(view.pdf(normal.n, f), expected, 1e-5 * expected) << seed << ' ' << i;
         }

@@ -223,7 +223,7 @@ inline LocalSpec lit_local() {
 }
 
 /// lit_local with four visibility: x < 1; above it y < 0.5; the rest, by the z of normals. Both splits of tiles are
-/// told apart.
+/// distinguished.
 inline LocalSpec visibility_local() {
     LocalSpec spec = lit_local();
     spec.visibility.emplace();
@@ -245,7 +245,7 @@ inline LocalSpec regional_local() {
     return spec;
 }
 
-/// visibility_local with two windows in a wall at x = 4 and one in a wall at y = 3; the last place samples by rows
+/// visibility_local with two portals in a wall at x = 4 and one in a wall at y = 3; the last cell samples by rows
 /// alone.
 inline LocalSpec windowed_local() {
     LocalSpec spec = visibility_local();

@@ -42,7 +42,7 @@ private:
     int count_;
 };
 
-/// What a view tells, by numbers that go through all of it.
+/// Results of a view, for numbers that go through all of it.
 std::vector<double> told(const acdf::DirectionSample& s, float pdf) {
     return {double{s.direction[0]}, double{s.direction[1]}, double{s.direction[2]}, double{s.pdf}, double{pdf}};
 }

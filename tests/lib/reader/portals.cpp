@@ -1,4 +1,4 @@
-// Portals: what is sampled through windows, from files written by hand.
+// Portals: samples through them, from files written by hand.
 #include "tests/lib/reader/local_loaded.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 using namespace acdf_test;
 
 constexpr float kNormalsInside[][3] = {{1, 0, 0}, {0.6f, 0.3f, 0.4f}, {0.1f, -0.9f, 0.2f}, {0, 0, 1}, {-1, 0, 0}};
-/// In each cell, between two and three of them, next to a window, and in the plane of one.
+/// In each cell, between two and three of them, next to a portal, and in the plane of one.
 constexpr float kInside[][3] = {{0, 0, 1},       {2, -1, 1}, {2, 1.5f, 1}, {1.1f, 0.2f, 1},
                                 {0.9f, 0.6f, 2}, {3, 2, 4},  {3, 1, 1.5f}, {2.9f, -0.5f, 1.5f}};
 
@@ -44,7 +44,7 @@ TEST(Portals, SamplesHaveTheDensityThatIsFoundForThem) {
     }
 }
 
-/// Directions that a row never samples are sampled through no window alone, and what a row samples stays so.
+/// Directions that a row never samples are sampled through no portal alone, and what a row samples stays so.
 TEST(Portals, NothingThatANormalSeesIsLost) {
     const LoadedLocal loaded(windowed_local());
     std::mt19937_64 random(8);
@@ -103,7 +103,7 @@ TEST(Portals, DirectionsFallWhereTheDensitySays) {
         const Histogram expected = expected_of(loaded.view(), point);
         double whole = 0.0;
         for (const double p : expected.of) whole += p;
-        EXPECT_NEAR(whole, 1.0, 8e-3) << c.position; // windows cut squares
+        EXPECT_NEAR(whole, 1.0, 8e-3) << c.position; // portals cut squares
         constexpr int samples = 40000;
         Histogram found;
         for (int i = 0; i < samples; ++i) {
@@ -123,7 +123,7 @@ TEST(Portals, DirectionsFallWhereTheDensitySays) {
             ++bins;
         }
         if (rest > 5.0) square += (rest_found - rest) * (rest_found - rest) / rest;
-        // Bins that a window cuts are summed less exactly: half as much again is allowed beside five deviations.
+        // Bins that a portal cuts are summed less exactly: half as much again is allowed beside five deviations.
         EXPECT_LT(square, 1.5 * bins + 5.0 * std::sqrt(2.0 * bins)) << c.position;
     }
 }
@@ -167,7 +167,7 @@ TEST(Portals, NothingIsDrawnInCellsWithoutLight) {
     EXPECT_GT(seen, 10);
 }
 
-/// What a window shows of a dark cell is nothing, whatever rounding makes of large sums around it.
+/// What a portal shows of a dark cell is nothing, whatever rounding makes of large sums around it.
 TEST(Portals, RoundingIsNoLight) {
     LocalSpec spec = windowed_local();
     spec.portals->portals = {{{4, 0.3f, 1.3f}, {1, 2}, 0}};
@@ -185,7 +185,7 @@ TEST(Portals, RoundingIsNoLight) {
     EXPECT_EQ(LoadedLocal(spec).view().at(x, kNormalsInside[0]).visible_portals.count, 1);
 }
 
-/// A place that samples by its row alone, one behind a wall, one outside, and a normal alone see no windows.
+/// A position that samples by its row alone, one behind a wall, one outside, and a normal alone see no portals.
 TEST(Portals, PositionsWithoutAPortalSampleTheirRow) {
     const LoadedLocal loaded(windowed_local()), rows(visibility_local());
     const struct {

@@ -1,4 +1,4 @@
-// Squares of the lat-long grid by floats: where they are told they are those by doubles, and nearly all are.
+// Squares of the lat-long grid by floats: where floats decide they agree with doubles, and nearly all are decided.
 #include "tests/inputs/sanitized.h"
 
 #include <acdf/row_heights.h>

@@ -15,7 +15,7 @@ extern "C" void acdf_c_sample(const AcdfEnvironment* env, double u0, double u1, 
 
 namespace {
 
-// The frame, with directions that tell all axes and signs apart: SPEC.md §6.1.
+// The frame, with directions that distinguish all axes and signs: SPEC.md §6.1.
 TEST(EnvironmentFrame, quadrantsAndHemispheres) {
     EnvironmentSpec spec;
     spec.columns = 4;

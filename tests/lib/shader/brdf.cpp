@@ -1,4 +1,4 @@
-// BRDFs for shaders beside the reader's: each sample has the pdf that both tell of its direction, samples are
+// BRDFs for shaders beside the reader's: each sample has the pdf that both return for its direction, samples are
 // the reader's, and so are pdfs, but for the rounding of floats and directions next to a border.
 #include "tests/lib/batch/brdf.h"
 #include "tests/inputs/sanitized.h"
@@ -36,8 +36,8 @@ public:
     double rounds(const float d[3]) const { return Halves(wo_, d).rounded(); }
     double moves(const float d[3]) const { return Halves(wo_, d).moved(); }
 
-    /// Whether the reader has this pdf for directions that floats hardly tell from these, or less and more of
-    /// it, a hundredth apart: next to the azimuth of a view the share of the other view is known to few digits.
+    /// Whether the reader has this pdf for directions that floats hardly distinguish from these, or less and more
+    /// of it, a hundredth apart: next to the azimuth of a view the share of the other view is known to few digits.
     bool told_near(const float d[3], float pdf) const {
         bool less = false, more = false;
         for (int k = 0; k < 54; ++k) {

@@ -1,5 +1,5 @@
-// Walks for shaders beside the reader's: each sample has the pdf that both tell of its direction, samples are
-// the reader's, and so are pdfs, but for the rounding of floats and directions next to a border.
+// Traversals for shaders beside the reader's: each sample has the pdf that both return for its direction, samples
+// are the reader's, and so are pdfs, but for the rounding of floats and directions next to a border.
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/golden_files.h"
@@ -61,7 +61,7 @@ public:
         const bool square = file_.tables.words()[ACDF_WALK_OCTAHEDRAL] != 0;
         return (square ? static_cast<float>(ACDF_OCTAHEDRAL_SPEED) : 1.0f) * 0x1p-20f;
     }
-    /// Whether a pdf is between those for normals that floats do not tell from this one: on an edge between
+    /// Whether a pdf is between those for normals that floats do not distinguish from this one: on an edge between
     /// bins they give a little to the next.
     bool told_of_near_normal(const float d[3], float pdf) const {
         if (!file_.local()) return false;

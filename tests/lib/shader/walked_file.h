@@ -1,4 +1,4 @@
-// A file beside its tables for shaders that walk.
+// A file beside its tables for shaders.
 #pragma once
 
 #include <acdf/shader/tables.h>
@@ -11,7 +11,7 @@
 
 namespace acdf_test {
 
-/// `status`: whether it can be walked. The reader has no tables of its own.
+/// `status`: whether shaders can traverse it. The reader has no tables of its own.
 struct WalkedFile {
     std::vector<std::uint8_t> bytes;
     acdf::File file;

@@ -100,7 +100,8 @@ TEST_F(BatchCommand, AChangedSceneIsAnotherOption) {
     EXPECT_EQ(report({manifest})["done"], 1);
 }
 
-/// Visibility of a scene, told by a manifest or by --set: the bytes of `acdf local`, again where the scene changes.
+/// Visibility of a scene, given by a manifest or by --set: the bytes of `acdf local`, again where the scene
+/// changes.
 TEST_F(BatchCommand, VisibilityIsThatOfTheScene) {
     write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
     const std::string mesh = folder / "roof.obj",

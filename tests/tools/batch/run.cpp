@@ -90,7 +90,7 @@ TEST_F(BatchRun, StaysWithinMemoryAndStartsWithTheLargest) {
     add("largest", 150);
     for (const JobResult& result : run(8, 160)) EXPECT_EQ(result.status, JobResult::Status::done) << result.error;
     EXPECT_EQ(stage.started.size(), plan.size());
-    // Small jobs fit beside it and may be quicker to tell that they began.
+    // Small jobs fit beside it and may report their start first.
     const auto first = stage.started.begin() + 8;
     EXPECT_NE(std::find(stage.started.begin(), first, "largest 150"), first);
     EXPECT_LE(stage.peak, 160u);

@@ -75,7 +75,7 @@ TEST_F(RenderCommand, JsonHasTheFigures) {
             const double variance = one["relative_variance"]["value"], noise = one["noise_percent"].begin().value();
             EXPECT_GT(variance, 0.0);
             EXPECT_TRUE(one["relative_variance_median"].is_number() && one["resolved"].is_boolean());
-            // of the fewest samples that are told: 16, or with Sobol' points those that were sampled, 5
+            // for the fewest samples that are reported: 16, or with Sobol' points those that were sampled, 5
             const double samples = std::stod(one["noise_percent"].begin().key());
             EXPECT_NEAR(noise, 100.0 * std::sqrt(variance * 5.0 / samples), 1e-3 * noise);
             EXPECT_GT(one["share_above_horizon"], 0.1);

@@ -1,4 +1,4 @@
-// Windows that files with visibility cells know: told by --portal and --portals, and sampled through in pictures.
+// Portals of files with visibility cells: given by --portal and --portals, and sampled in pictures.
 #include "tests/tools/render/scenes.h"
 
 #include <acdf/reader.h>

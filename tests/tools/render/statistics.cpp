@@ -145,7 +145,7 @@ TEST(RenderStatistics, RatiosLieInTheirIntervalsAsOftenAsPromised) {
     EXPECT_NEAR(both / double{trials}, 0.955, 0.02);
 }
 
-// What seeds tell of noise differs as independent figures do, few as they may be.
+// Estimates of noise by seeds differ as independent figures do, few as they may be.
 TEST(RenderStatistics, NoiseOfSeedsDiffersAsMuchAsItsMean) {
     constexpr std::size_t points = 40, trials = 4000;
     std::mt19937_64 random(8);

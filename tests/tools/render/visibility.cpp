@@ -49,7 +49,7 @@ struct Viewed {
     }
 };
 
-/// How far estimates at all points are off, in standard errors that the sums tell.
+/// How far estimates at all points are off, in standard errors by the sums.
 struct Deviations {
     double sum = 0.0, variance = 0.0, square = 0.0;
     std::uint32_t points = 0, far = 0, lost = 0;
@@ -102,7 +102,7 @@ TEST(RenderVisibility, AreAsSummedInARoom) {
     expect_as_summed(scene, {{"local:24KiB"}, {"visibility:24KiB"}, {"tiles:8x4"}, {"visibility-cache:8x4"}});
 }
 
-/// Wherever light is, from any place and for any normal, it may be sampled.
+/// Wherever light is, from any position and for any normal, it may be sampled.
 TEST(RenderVisibility, LoseNoLightAnywhere) {
     ACDF_NOT_SANITIZED();
     for (const std::string& text : {test::small_scene("\"full-cdf\""), test::mesh_scene("room.obj")}) {

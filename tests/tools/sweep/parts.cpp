@@ -136,7 +136,7 @@ TEST(SweepAdvice, PicturesDecideNotTheLightItself) {
     EXPECT_EQ(recommended().row, 1u);
     sweep.rows[1].lit[open_partner].mean = 2.2;
     EXPECT_EQ(recommended().row, 2u);
-    sweep.numbers = measure::Numbers::sobol; // where they are told, those
+    sweep.numbers = measure::Numbers::sobol; // where they are given, those
     EXPECT_EQ(recommended().row, 0u);
     sweep = made_up_pictures();
     sweep.rows[1].times.sample.assign(6, 10.0); // faster by 15 % of all that a sample costs

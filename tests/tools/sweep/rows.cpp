@@ -46,7 +46,7 @@ TEST(SweepRows, LocalFilesBesideTheirBaselines) {
     EXPECT_LT(by["acdf"]->sobol, by["full_cdf"]->sobol);
 }
 
-// A set of a single point is uniform: then sampled variances are those that sums tell.
+// A set of a single point is uniform: then sampled variances are those of the sums.
 TEST(SweepRows, SobolOfOneSampleIsWhatTheSumsTell) {
     SweepOptions options = small_sweep();
     options.visible.spp = 1;

@@ -107,7 +107,7 @@ TEST(SweepSurface, TheOccludersAreThoseOfTheDemoScene) {
     EXPECT_LT(share, 0.6);
 }
 
-// A set of a single point is uniform: then sampled variances are those that sums tell.
+// A set of a single point is uniform: then sampled variances are those of the sums.
 TEST(SweepSurface, DrawnVariancesAreThoseOfTheSums) {
     const compress::Target target = acdf_test::noise_target(48, 24, 5, 1.0, 0.1);
     const auto sampler = measure::full_cdf_sampler(target);

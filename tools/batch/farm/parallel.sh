@@ -4,7 +4,7 @@
 #   SHARDS=64 PARALLEL='--sshlogin node1,node2,node3' tools/batch/farm/parallel.sh OUT INPUT... [OPTION...]
 #
 # with the inputs and options of `acdf batch`, best as absolute paths that all machines share. Options of parallel go
-# into $PARALLEL; acdf is in the PATH of the machines, or $ACDF tells where. A shard that fails is tried once more; then
+# into $PARALLEL; acdf is in the PATH of the machines, or $ACDF is its path. A shard that fails is tried once more; then
 # reports are merged. A shard uses all threads of its
 # machine, so one at a time is enough; $JOBS is the number of them a machine.
 set -euo pipefail

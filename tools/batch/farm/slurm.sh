@@ -21,7 +21,7 @@ out=$1
 shift
 
 limits=(--threads "${SLURM_CPUS_PER_TASK:-1}")
-# Slurm tells MiB. A quarter is left for what estimates miss.
+# Slurm's unit is MiB. A quarter is left for what estimates miss.
 memory=${SLURM_MEM_PER_NODE:-$((${SLURM_MEM_PER_CPU:-0} * ${SLURM_CPUS_PER_TASK:-1}))}
 if ((memory > 0)); then limits+=(--memory "$((memory * 3 / 4))MiB"); fi
 

@@ -168,7 +168,7 @@ ACDF_INLINE void acdf_about_cells(const AcdfBrdf* brdf, const AcdfBrdfView* view
 }
 
 /* About acdf_brdf_view_pdfs, in a fraction of the time: of cells that lie less than a sixteenth of their height, or
- * one position, before it. Azimuths are told better: beyond some of them nothing is reflected. At most 1e30; 0
+ * one position, before it. Azimuths are more exact: beyond some of them nothing is reflected. At most 1e30; 0
  * where there are none, never NaN. */
 ACDF_OUTLINE_ON_CPU void acdf_brdf_view_pdfs_about(const AcdfProductVectors* vectors, const AcdfBrdf* brdf,
                                                    const AcdfBrdfView* view, const float (*wi)[3], size_t count,

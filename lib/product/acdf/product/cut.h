@@ -4,8 +4,8 @@
  * same contract.
  *
  * Within a part the pdf is that of the local map, light times cosine; how much each part gets is up to whoever
- * made the cut. A direction's part is found by the cut's own splits, then the map's walk goes on from there: what
- * the cut does first the map need not do again. */
+ * made the cut. A direction's part is found by the cut's own splits, then the map's traversal goes on from there:
+ * what the cut does first the map need not do again. */
 #ifndef ACDF_CUT_H
 #define ACDF_CUT_H
 
@@ -33,7 +33,7 @@ typedef struct AcdfCutPart {
     uint16_t entry;                     /* the same in runtime tables */
     uint16_t first_light, end_light;    /* which bright tiles lie in it */
     uint32_t low[2], high[2];
-    uint32_t tile;  /* the first tile in it; they are numbered in the order of the walk */
+    uint32_t tile;  /* the first tile in it; they are numbered in the order of the traversal */
     uint16_t owner; /* 2 * split of the cut + side; of the whole: not used */
     uint16_t depth; /* how many splits lie above it */
 } AcdfCutPart;
@@ -189,8 +189,8 @@ ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* p
     ++cut->count;
     part->owner = (uint16_t)(2 * count);
     upper->owner = (uint16_t)(2 * count + 1);
-    /* Splits are numbered as the walk meets them, and so are tiles: as many as the splits of the lower half, and
-     * one. */
+    /* Splits are numbered as the traversal meets them, and so are tiles: as many as the splits of the lower half,
+     * and one. */
     upper->tile = child & ACDF_TILE_FLAG ? child & ~ACDF_TILE_FLAG : part->tile + child - part->node;
     low = acdf_cut_share(local, point, part, upper, &high);
     if (point->visibility.count > 0 && low + high > 0.0) low = acdf_cut_see(local, point, part, upper, low, &high);
@@ -212,8 +212,8 @@ ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* p
 }
 
 /* A direction from which a part is lit much: of its brightest light, where bright tiles give it more than all else;
- * else the middle of the tile that is reached where the walk always takes the half to which the nearest bin gives
- * more. Returns the tile's number. */
+ * else the middle of the tile that is reached where the traversal always takes the half to which the nearest bin
+ * gives more. Returns the tile's number. */
 ACDF_CALLED uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                     int number, float direction[3]) {
     const AcdfCutPart* part = &cut->part[number];

@@ -15,7 +15,7 @@ ACDF_INLINE uint32_t acdf_cut_side(double number) {
     return (uint32_t)(scaled < 0xFF ? scaled : 0xFF) ^ 0x80u;
 }
 
-/* Tells each part which random numbers sample it: those of a split are shared by its children; share[~i] is that of
+/* Sets which random numbers sample each part: those of a split are shared by its children; share[~i] is that of
  * part i, share[i] of split i. */
 ACDF_FN void acdf_cut_borders(AcdfCut* cut, const double* share) {
     /* Of splits and parts, as shares are: low and high on axis 0, on axis 1. Each in an array of its own: what is

@@ -24,7 +24,7 @@ enum {
 /* Of what makes the weights of a cut: steps that all of them have together, but for one more of each. */
 #define ACDF_FAST_CUT_STEPS 536870912.0f /* 2^29 */
 
-/* Lights, at least one part that is none up to a multiple of sixteen, and groups are parts. */
+/* Parts are bright tiles, then at least one empty part up to a multiple of sixteen, then groups. */
 typedef struct AcdfFastCut {
     int32_t whole;                      /* the last end; 0: there is nothing to sample */
     uint32_t bright_tiles;              /* how many parts are bright tiles: a multiple of 16 */

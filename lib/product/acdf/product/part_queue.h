@@ -11,7 +11,7 @@ namespace acdf {
 /// Parts in order of what is to be gained by dividing them, to an octave of its square.
 class PartQueue {
 public:
-    /// Squares of priorities are told apart from 2^-57 `scale` to 64 `scale`.
+    /// Squares of priorities are distinguished from 2^-57 `scale` to 64 `scale`.
     ACDF_METHOD explicit PartQueue(double scale) noexcept : top_(key(64.0 * scale)), filled_(0) {
         memset(head_, -1, sizeof head_);
     }

@@ -37,8 +37,8 @@ struct LobeGuides {
         }
     }
 
-    /// Relative variance of one sample of the lobe's own sampler, as the guides tell, and what they have missed
-    /// where the parts expect a larger mean: small bright tiles in a lobe make it large.
+    /// Relative variance of one sample of the lobe's own sampler, as the guides estimate it, and what they have
+    /// missed where the parts expect a larger mean: small bright tiles in a lobe make it large.
     ACDF_METHOD double variance(double expected) const noexcept {
         constexpr double of_missed = 2.0, unknown = 100.0;
         if (!(weights > 0.0)) return unknown;
@@ -56,7 +56,7 @@ struct PartRating {
     float solid_angle;
     float mean;   ///< of the lobe's value over the part
     float mass;   ///< of the lobe's own sampler in it
-    float around; ///< of what value it may be, as its parents and siblings tell
+    float around; ///< of what value it may be, estimated from its parents and siblings
     float spread; ///< relative square of how much the value changes across it
 
     /// Mean and mass, from the heart, which stands for the whole part, and the guides in it: weighed as two
@@ -102,7 +102,7 @@ ACDF_METHOD Real padded_sum(Real* x, int count) noexcept {
 /// Gives all parts their probabilities, into `left`. Returns the share of samples that is left to the lobe's own
 /// sampler: the more the lobe changes within parts, and the less the light within the lobe. 1, and nothing is
 /// given, where parts have no light or reflect none. `Most`: of parts, for which `left` has room; `least_share`:
-/// what that sampler gets at least; `parts` tell what light is in one, and its rating.
+/// what that sampler gets at least; `parts` give the light in one, and its rating.
 template <std::size_t Most, class Real, class Parts>
 ACDF_METHOD double weigh_parts(int count, const LobeGuides& guides, double least_share, const Parts& parts,
                                Real* left) noexcept {

@@ -2,7 +2,7 @@
 // (acdf/product/product.h): which share of the samples its bright tiles, groups of tiles and tiles get. C++17,
 // header only, freestanding.
 //
-// All bright tiles and groups that have much light are looked at at once, so that a lobe which tells many pdfs
+// All bright tiles and groups that have much light are looked at at once, so that a lobe which returns many pdfs
 // together does, and nothing waits for what was seen before. Then the groups that reflect most are opened: their
 // tiles are looked at. Numbers are of all parts, one after the other, without a branch: compilers take vectors.
 #pragma once
@@ -13,7 +13,7 @@
 namespace acdf {
 
 /// A point while it is prepared. Its parts, by number: bright tiles, one that is none, groups, and the tiles of
-/// open groups. Lights and groups that give nothing are no parts.
+/// open groups. Bright tiles and groups that give nothing are no parts.
 template <class AnyLobe>
 class GroupRating {
 public:
@@ -34,7 +34,8 @@ private:
     static constexpr int most_parts = ACDF_FAST_CUT_PARTS, most = most_parts + group_size * ACDF_FAST_CUT_OPEN;
     static constexpr int parts_per_open = 5;                                     ///< of what is asked for beyond 8
     static constexpr float least_light = 1.0f / 512.0f, least_reflected = 0.01f; ///< to be looked at, to be opened
-    /// Of the lobe's own sampler: neighbours tell less than parents do, and least where no group is open.
+    /// Of the lobe's own sampler: neighbours are a weaker estimate than parents, and the weakest where no group is
+    /// open.
     static constexpr double least_share = 0.1, of_few = 0.3;
     static constexpr int few_parts = 16;
     /// Where the lobe is looked at: directions in the surface's frame, each of a part.
@@ -203,7 +204,7 @@ ACDF_METHOD void GroupRating<AnyLobe>::rate_groups() noexcept {
 }
 
 /// How much the lobe changes from part to part, its square scaled, and what it may be in one as its neighbours
-/// tell, besides what is hoped for. Parts before the first one and behind the last one are others' neighbours.
+/// suggest, besides what is hoped for. Parts before the first one and behind the last one are others' neighbours.
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::compare(int first, int end, float scale, float hoped) noexcept {
     const float before_first = mean_[first - 1];

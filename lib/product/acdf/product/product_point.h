@@ -18,7 +18,7 @@ struct PointOfLobe {
     int parts; ///< about how many are wanted
     const AcdfProductVectors* vectors;
 
-    /// Beyond this the lobe's value and pdf are not told apart: no sum of products overflows.
+    /// Values and pdfs of the lobe are clamped to this, so that no sum of products overflows.
     static constexpr float most_value = 1e18f;
 
     ACDF_METHOD static float bounded(float x) noexcept { return x < most_value ? x > 0.0f ? x : 0.0f : most_value; }

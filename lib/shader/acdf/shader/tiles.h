@@ -3,8 +3,8 @@
  * (acdf/shader/tables.h) makes. One text for processors and for shaders of every language (acdf/dialect.h).
  *
  * Weights of rows and sums are whole numbers, as the reader has them. A list of sums is halved until one is left,
- * as trees are walked (acdf/shader/tree.h): what is left of random numbers is exact, and borders are where floats
- * put them. */
+ * as trees are traversed (acdf/shader/tree.h): what is left of random numbers is exact, and borders are where
+ * floats put them. */
 #ifndef ACDF_SHADER_TILES_H
 #define ACDF_SHADER_TILES_H
 
@@ -22,7 +22,7 @@ extern "C" {
 #define ACDF_TILES_ROWS 33u
 #define ACDF_TILES_GROUPS 34u /* of 16 tiles */
 #define ACDF_TILES_ENDS 35u   /* how many sums of groups a row has */
-#define ACDF_TILES_ROOT 36u   /* split where walks begin, or the only tile */
+#define ACDF_TILES_ROOT 36u   /* split where traversals begin, or the only tile */
 #define ACDF_TILES_SPLITS                                                                                          \
     37u                        /* 2 words each: axis (three bits) and position; 16 bits each: lower and upper part \
                                 */

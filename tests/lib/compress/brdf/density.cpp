@@ -1,4 +1,4 @@
-// Fitted BRDF files: what is sampled is what is told, it covers the light, and it is where the light is.
+// Fitted BRDF files: samples follow the pdf, the pdf covers the light, and it is near the light.
 #include "tests/inputs/brdf_files.h"
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"

@@ -1,4 +1,4 @@
-// The pdf of fitted local environment maps: what is sampled is what is told, and it covers the light.
+// The pdf of fitted local environment maps: samples follow the pdf, and it covers the light.
 #include "tests/inputs/local_maps.h"
 #include "tests/inputs/sanitized.h"
 

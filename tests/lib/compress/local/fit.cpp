@@ -158,7 +158,7 @@ TEST(Tiles, LargestCosineIsThatOfNoPositionLess) {
                 ASSERT_LE(std::hypot(d[0] - m[0], d[1] - m[1], d[2] - m[2]), reach + 1e-9);
             }
         ASSERT_GE(told, most - 1e-7);
-        ASSERT_LE(told, most + 0.1); // it is that of some place
+        ASSERT_LE(told, most + 0.1); // it is that of some direction in the box
     }
 }
 

@@ -44,7 +44,7 @@ struct Tiled {
 
 /// Of what a normal samples from the mixture of its bins.
 struct Mixed {
-    double moment = 0.0; ///< E[(f/p)^2] over the square of the mean, as far as tiles tell
+    double moment = 0.0; ///< E[(f/p)^2] over the square of the mean, as far as tiles resolve it
     double vain = 0.0;   ///< share of the samples below the horizon
 };
 

@@ -1,4 +1,4 @@
-// Sizes of trees over tiles, told before they are made.
+// Sizes of trees over tiles, known before they are made.
 #include "compress/local/tile_size.h"
 #include "compress/local/light.h"
 #include "compress/local/normals.h"

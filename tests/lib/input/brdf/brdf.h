@@ -134,7 +134,7 @@ private:
     std::vector<Field> fields_;
 };
 
-/// What stands in a .bsdf file. Every table is small and of another size, to tell them apart.
+/// What stands in a .bsdf file. Every table is small and of another size, to distinguish them.
 struct RglParts {
     std::vector<float> theta = {0.0f, 0.6f, 1.1f, 1.5707964f}, phi = {0.0f};
     std::vector<std::uint64_t> ndf_shape = {3, 5}, sigma_shape = {3, 4}, vndf_size = {7, 6}, colour_size = {4, 5};

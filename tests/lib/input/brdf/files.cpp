@@ -1,4 +1,4 @@
-// Opening BRDFs by name: what each file is told apart by, tables of numbers, and real measurements.
+// Opening BRDFs by name: how kinds of files are recognised, tables of numbers, and real measurements.
 #include "input/brdf/table.h"
 #include "tests/inputs/folder.h"
 #include "tests/inputs/paths.h"

@@ -109,7 +109,7 @@ TEST(MeshTriangles, OfCornersThatAreNoNumbersOrTooFarAwayAreLeftOut) {
     }
 }
 
-/// Both sides of a triangle are sampled all over, whatever sequence tells the points.
+/// Both sides of a triangle are sampled all over, whatever sequence numbers the points.
 TEST(MeshSurfaces, GiveEachTriangleAndSideItsPoints) {
     Triangles four;
     for (float x : {0.0f, 2.0f, 4.0f, 6.0f})

@@ -98,7 +98,7 @@ TEST(SceneHostile, Meshes) {
     EXPECT_NE(refusal_of(folder, "a.ply", start + "end_header\n"), "");
 }
 
-/// A list of as many corners as `length` tells, of a file of some hundred bytes.
+/// A list of as many corners as `length` says, of a file of some hundred bytes.
 std::string ply_of_a_list(const std::string& format, const std::string& type, const std::string& length) {
     std::string bytes = "ply\nformat " + format +
                         " 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"

@@ -83,7 +83,7 @@ TEST(InputDetect, BackFacesOfVerticalCrossesHangOrStandUpright) {
                 ASSERT_NEAR(upright.rgb[i], hanging.rgb[i], 1e-5f * hanging.rgb[i]) << n << " " << i;
         }
     }
-    // Where nothing tells, it hangs.
+    // Without a hint it hangs.
     const std::string reason = read(folder, uniform_noise(96, 128), Projection::cube_cross).projection_reason;
     EXPECT_EQ(reason, "--projection cube-cross");
 }

@@ -1,4 +1,4 @@
-// What files may look like: formats, channels, windows, tiles, mip levels, integers, and bad texels.
+// What files may look like: formats, channels, data windows, tiles, mip levels, integers, and bad texels.
 #include "tests/lib/input/write.h"
 
 #include <OpenImageIO/deepdata.h>

@@ -192,7 +192,7 @@ TEST(Layers, ThePartOfTheLightIsRead) {
     EXPECT_CONTAINS(refusal(folder / "c.exr"), "where R, G, B or a single one is needed");
 }
 
-// A layer that nobody chose is told, unless it is the image itself; of two that are as good none is.
+// A layer that nobody chose is reported, unless it is the image itself; of two that are as good none is.
 TEST(Layers, OfAFileAreTold) {
     const Folder folder;
     OIIO::ImageSpec spec(8, 4, 6, OIIO::TypeDesc::FLOAT);

@@ -1,4 +1,4 @@
-// Samplers of a probe's texels: that each samples by the pdf it tells, which is the one that it should have.
+// Samplers of a probe's texels: that each samples by the pdf it returns, which is the right one.
 #include "tests/lib/measure/samplers/baselines.h"
 #include "tests/lib/measure/samplers/light_sampler_checks.h"
 

@@ -106,7 +106,7 @@ TEST(Product, WarpedNumbersDrawByTheirDensity) {
     check.samples = 4000;
     const std::vector<ShadingPoint> at = points(12);
     for (std::size_t i = 0; i < all_lights.size(); ++i)
-        if (!is_fast(all_lights[i])) // which tells no numbers of a direction
+        if (!is_fast(all_lights[i])) // which has no invert
             expect_samples_as_its_pdf(*product_warp_sampler(all_lights[i].map->file, brdf), at[2 * i],
                                       SphereBins{64, 32, 12}, all_lights[i].name, check);
 }

@@ -1,5 +1,5 @@
 // What rooms are lit by elsewhere: portals, and what can be seen of tiles at cache points. That each samples by the
-// pdf it tells, and finds all the light that reaches a point.
+// pdf it returns, and finds all the light that reaches a point.
 #include "tests/lib/measure/samplers/baselines.h"
 #include "tests/lib/measure/samplers/light_sampler_checks.h"
 
@@ -20,7 +20,7 @@ Target probe() {
     });
 }
 
-/// Two windows that face x, one of them in part behind an opening that is tilted: some directions go through both.
+/// Two portals that face x, one of them in part behind an opening that is tilted: some directions go through both.
 std::vector<Portal> portals() {
     return {{{2, -1.5, 0.5}, {0, 1.2, 0}, {0, 0, 1.4}},
             {{2, 0.4, 0.6}, {0, 1.5, 0}, {0, 0, 1}},

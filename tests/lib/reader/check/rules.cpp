@@ -137,7 +137,7 @@ TEST(Rules, areSortedAndNamedOnce) {
     EXPECT_EQ(acdf::find_rule(9999), nullptr);
 }
 
-// Faults that do not hide each other are all told; the sink may stop.
+// Faults that do not hide each other are all reported; the sink may stop.
 TEST(Validate, reportsAllFindings) {
     Bytes file = complete_file().encode();
     set(file, 28, 4, 5);                                 // two feature bits

@@ -317,7 +317,7 @@ TEST(LocalRules, whatIsAtTheirLimitsIsRight) {
     expect_valid(one.encode());
 }
 
-// A tile is as wrong as its root: what is told stands where that is.
+// A tile is as wrong as its root: the fault is reported at that position.
 TEST(LocalRules, findingsStandWhereTheFaultIs) {
     const Bytes root = field(shared_local, "TILE", 528 + 16 + 8, 4, 18)();
     EXPECT_EQ(findings(root).last_offset, payload_of(root, "TILE") + 528 + 16 + 8);

@@ -1,6 +1,7 @@
-// The C++ views and the product in a kernel: compiled for devices by nvcc; or by clang, with no toolkit but these lines.
+// The C++ views and the product in a kernel: compiled for devices by nvcc; or by clang, with no toolkit but these
+// lines.
 #ifndef __NVCC__
-#ifndef __HIP__ // whose compilers tell by __HIPCC__
+#ifndef __HIP__ // whose compilers define __HIPCC__
 #define __CUDACC__ 1
 #endif
 #define __host__ __attribute__((host))

@@ -1,4 +1,4 @@
-// Runtime tables of BRDFs beside the walk that they stand for: the same samples and pdfs to the bit, on files
+// Runtime tables of BRDFs beside the traversal that they replace: the same samples and pdfs to the bit, on files
 // made by hand, of many cells and of the frozen ones.
 #include "tests/lib/batch/brdf.h"
 #include "tests/lib/reader/brdf_forms.h"
@@ -23,7 +23,7 @@ bool same(const acdf::DirectionSample& a, const acdf::DirectionSample& b) {
 void expect_the_walk(const BrdfPair& pair, std::size_t count) {
     const acdf::BrdfView fast = pair.fast.brdf(), plain = pair.plain.brdf();
     const Queries asked(plain, count);
-    std::size_t strays = 0; // out of the cell whose pdf they have: floats do not tell cells of 2^-24 apart
+    std::size_t strays = 0; // out of the cell whose pdf they have: floats do not resolve cells of 2^-24
     for (std::size_t i = 0; i < count; ++i) {
         const float *wo = asked.wo()[i], *wi = asked.wi()[i];
         const double* u = asked.u()[i];
@@ -101,7 +101,7 @@ TEST(RuntimeTablesOfBrdfs, AreNoneWhereManyViewsShareFewRows) {
 }
 
 #ifdef ACDF_BRDF_GUESSES
-/// Most guesses are right, or samples would be walked.
+/// Most guesses are right, or samples would take the traversal.
 TEST(RuntimeTablesOfBrdfs, GuessMostCells) {
     BrdfSpec spec = shared_brdf(); // eight by eight cells, half-way between views those of one
     spec.columns = spec.rows = 1024, spec.splits.clear(), spec.codes.assign(3, {});

@@ -1,4 +1,4 @@
-// Runtime tables of local environments beside the walk that they stand for: the same pdf to the bit for every
+// Runtime tables of local environments beside the traversal that they replace: the same pdf to the bit for every
 // direction and normal, and the same samples but for rounding, on golden files, random ones, those that break their
 // luck, and a fitted one.
 #include "tests/inputs/local_maps.h"
@@ -45,16 +45,16 @@ void expect_same(const LocalPair& pair, const AcdfLocalPoint points[2], const fl
     served.told += pair.tables() && pair.tables()->pieces && acdf_local_find_piece(pair.tables(), direction);
 }
 
-/// Whether two samples are of one cell and at one place but for the rounding of floats. (Where a share is sampled
-/// around the normal the pdf depends on the place.)
+/// Whether two samples are of one cell and at one position but for the rounding of floats. (Where a share is
+/// sampled around the normal the pdf depends on the position.)
 bool same_sample(const acdf::DirectionSample& a, const acdf::DirectionSample& b, double most) {
     for (int i = 0; i < 3; ++i)
         if (!(std::fabs(double{a.direction[i]} - b.direction[i]) <= most)) return false;
     return std::fabs(double{a.pdf} - b.pdf) <= 1e-5 * b.pdf;
 }
 
-/// A sample is the walk's but next to borders, where it is that of numbers 2^-24 away. Its pdf is what the same
-/// view tells of it, where that holds of the walk: cells without tilts.
+/// A sample is that of the traversal but next to borders, where it is that of numbers 2^-24 away. Its pdf is what
+/// the same view returns for it, where that holds of the traversal: cells without tilts.
 void expect_same_sample(const LocalPair& pair, const AcdfLocalPoint points[2], const double u[2]) {
     const acdf::DirectionSample a = pair.fast.local().sample(points[0], u[0], u[1]);
     const acdf::DirectionSample b = pair.plain.local().sample(points[1], u[0], u[1]);
@@ -156,7 +156,7 @@ void expect_same_lights(const AcdfLocalPoint& a, const AcdfLocalPoint& b) {
     ASSERT_NEAR(a.sum, b.sum, 0x1p-39 * b.sum);
 }
 
-// Points are what the walk makes of a normal: to the bit, but for the sum of bright tiles.
+// Points are what the traversal makes of a normal: to the bit, but for the sum of bright tiles.
 TEST(LocalRuntimeTables, MakeTheSamePoints) {
     LocalPair pair(lit_local().encode());
     std::mt19937_64 random(8);
@@ -239,7 +239,7 @@ TEST(LocalRuntimeTables, AgreeOnManyTiles) {
     expect_agreement(pair, 300);
 }
 
-// As many tiles as files in use have: nearly all that is asked is told by the tables, in bounded memory.
+// As many tiles as files in use have: the tables answer nearly all calls, in bounded memory.
 TEST(LocalRuntimeTables, ServeNearlyAllOfUsualFiles) {
     const auto sky = texel_target(128, 64, [](std::uint32_t c, std::uint32_t r) {
         const double phi = centre_phi(c, 128), z = centre_z(r, 64);

@@ -1,4 +1,4 @@
-// Runtime tables of table files beside the walk that they stand for: the same bits, whatever is asked.
+// Runtime tables of table files beside the traversal that they replace: the same bits for all calls.
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/table_random.h"
 

@@ -1,4 +1,4 @@
-// Grids over squares of keys: who asks with a key of a box, its corners among them, is told of it, and of few
+// Grids over squares of keys: a query with a key of a box, its corners among them, finds the box, and few
 // others.
 #include "reader/tables/squares.h"
 
@@ -84,7 +84,7 @@ TEST(Squares, TellOfEachBox) {
         }
 }
 
-// A box without keys of an axis is told of nowhere, and what lies beside is as it was.
+// A box without keys of an axis is found nowhere, and what lies beside is as it was.
 TEST(Squares, LeaveOutBoxesWithoutKeys) {
     std::vector<KeyBox> boxes = random_boxes(200, 20, 1);
     for (std::size_t i = 0; i < boxes.size(); i += 3) boxes[i].span[i % 2] = {1, 0};

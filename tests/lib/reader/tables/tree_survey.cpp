@@ -1,5 +1,5 @@
 // How many cells lie below the curves of a tree: counted while the file is checked, where its tree lies in
-// preorder, by a walk of the tree elsewhere, and here one by one.
+// preorder, by a traversal of the tree elsewhere, and here one by one.
 #include "tests/extremes/targets.h"
 #include "tests/lib/compress/checks.h"
 #include "tests/lib/reader/golden_files.h"
@@ -22,7 +22,7 @@ namespace {
 using namespace acdf_test;
 using acdf::TreeSurvey;
 
-/// A file of an environment, and what its check tells of its tree.
+/// A file of an environment, and the survey that its check makes of its tree.
 class Checked {
 public:
     explicit Checked(const std::vector<std::uint8_t>& bytes) {
@@ -44,7 +44,7 @@ private:
     TreeSurvey survey_;
 };
 
-/// Expects that surveys tell what they hold below the curve at `at`, and below those below it. Returns how many
+/// Expects that surveys agree with what lies below the curve at `at`, and below those below it. Returns how many
 /// cells there are.
 std::uint64_t expect_cells(const AcdfEnvironment& environment, std::uint32_t at,
                            const std::vector<const TreeSurvey*>& surveys) {
