@@ -16,7 +16,7 @@ using acdf::DirectionSample;
 
 constexpr std::size_t kBatch = 256; // directions and views of so many stay in the first cache
 
-// Calls sample(first, n, drawn) for `count` items, some of them at once.
+// Calls sample(first, n, out) for `count` items, some of them at once.
 template <class Sample>
 void sample_in_batches(std::size_t count, float* directions, float* pdfs, Sample&& sample) {
     DirectionSample drawn[kBatch];

@@ -25,7 +25,7 @@ ACDF_LANE Vector to_doubles(Ints x) { return __builtin_convertvector(x, Vector);
 ACDF_LANE Ints to_integers(Vector x) { return __builtin_convertvector(x, Ints); } // rounded towards 0
 ACDF_LANE Integer to_indices(Ints x) { return __builtin_convertvector(x, Integer); }
 
-/* Their highest bits. */
+/* The highest bit of each lane. */
 ACDF_LANE unsigned sign_bits(Ints x) {
 #if ACDF_WIDTH == 8
     return (unsigned)_mm256_movemask_ps((__m256)x);
@@ -280,7 +280,7 @@ struct FastPointLanes {
     alignas(64) long long facet[kRoom]; // of samples: in which byte of all it begins
 };
 
-/* Those of a vector from a lane on. */
+/* Keeps the points of a vector from a lane on. */
 template <bool Draws>
 ACDF_LANE void keep_points(const FastPoints<Draws>& p, std::size_t at, FastPointLanes* l) {
     for (int i = 0; i < kRows; ++i) {

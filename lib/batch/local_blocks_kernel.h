@@ -26,7 +26,7 @@ ACDF_LANE void numbers_of(const double (*u)[2], std::size_t count, Vector out[2]
     for (int axis = 0; axis < 2; ++axis) out[axis] = unit_interval((Vector)given[axis]);
 }
 
-/* So many lanes of a block. */
+/* The mask of the first `count` lanes of a block. */
 ACDF_LANE std::uint64_t first_lanes(std::size_t count) {
     return count < kBlock ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
 }

@@ -16,7 +16,7 @@ struct LightLanes {
     std::uint64_t unlike = 0;            // lanes that have some
 };
 
-/* Those of a vector from a lane on. */
+/* Keeps the bright tiles of a vector from a lane on. */
 template <class P>
 ACDF_LANE void keep_lights(const P& p, std::size_t at, LightLanes* l) {
     for (int i = 0; i < 3; ++i) stored(&l->normal[i][at], p.normal[i]);

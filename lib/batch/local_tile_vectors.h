@@ -33,7 +33,7 @@ ACDF_LANE void end_boxes(std::size_t count, Boxes* boxes) {
     }
 }
 
-/* Their probabilities, by those of the tiles, which are above 0, as are the products. */
+/* Probabilities of cells, by those of their tiles, which are above 0, as are the products. */
 ACDF_LANE Vector probabilities(const Cells& cells, const Boxes& done, std::size_t at) {
     return positive(loaded(&cells.probability[at]) * positive(loaded(&done.product[at])));
 }

@@ -70,10 +70,10 @@ std::string option_text(const BrdfFileOptions& options) {
 
 namespace {
 
-/// What is darker is black, in sr^-1: fits and sums divide by the light of a view, and square it.
+/// Darker values are taken as black, in sr^-1: fits and sums divide by the light of a view, and square it.
 constexpr double kLeastReflected = 1e-100;
 
-/// Of all channels, by a file's weights.
+/// The brightness over all channels, by a file's weights.
 double brightness(const double rgb[3], AcdfChannels channels, const compress::ChannelWeights& weights) {
     if (channels == ACDF_CHANNELS_SEPARATE) return std::sqrt(rgb[0] * rgb[0] + rgb[1] * rgb[1] + rgb[2] * rgb[2]);
     if (channels == ACDF_CHANNELS_LARGEST) return std::max({rgb[0], rgb[1], rgb[2]});

@@ -137,7 +137,7 @@ Environment build_once(const compress::Target& target, const Source& source, con
     return out;
 }
 
-/// Both orders; `progress` covers them in turn.
+/// Builds with both orders of axes, and keeps the better; `progress` covers them in turn.
 Environment build_better(const compress::Target& target, const Source& source, const EnvironmentOptions& options,
                          const Progress& progress) {
     const auto build = [&](Order order, double begin) {

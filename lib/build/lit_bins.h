@@ -30,7 +30,7 @@ private:
     std::optional<compress::BinLight> light_;
 };
 
-/// Those of the size that was tried last.
+/// The bins of the size that was tried last.
 using LastBins = std::optional<LitBins>;
 
 inline LitBins& bins_for(const LocalOptions& options, double bytes, const compress::Target& target,

@@ -58,7 +58,7 @@ struct LocalOptions {
 /// All options that shape the file, in one spelling: its metadata `fit.options`.
 std::string option_text(const std::string& reading, const LocalOptions& options);
 
-/// Of that, which shape, where it was asked for.
+/// The part of option_text that names the shape; empty where none was asked for.
 std::string shape_text(const LocalOptions& options);
 
 struct Local {

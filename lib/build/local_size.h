@@ -1,4 +1,5 @@
-// How many bins and tiles suit a local environment file of so many bytes, and what is left for what is in tiles.
+// How many bins and tiles suit a local environment file of a number of bytes, and how many bytes are left for the
+// insides of tiles.
 #pragma once
 
 #include "build/local.h"

@@ -32,7 +32,7 @@ constexpr Beginning of_no_brdf[] = {
 template <std::size_t N>
 std::string told_by_beginning(const std::string& path, const Beginning (&known)[N]) {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) return {}; // what is read of a pipe is gone
+    if (!std::filesystem::is_regular_file(path, error)) return {}; // reading a pipe would consume it
     char first[12] = {};
     std::ifstream(path, std::ios::binary).read(first, sizeof first);
     for (const Beginning& beginning : known)

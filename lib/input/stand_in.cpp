@@ -16,7 +16,7 @@ bool begins_with(std::string_view text, std::string_view beginning) {
 
 std::string beginning_of(const std::string& path) {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) return {}; // what is read of a pipe is gone
+    if (!std::filesystem::is_regular_file(path, error)) return {}; // reading a pipe would consume it
     std::string out(512, '\0');
     std::ifstream file(path, std::ios::binary);
     file.read(out.data(), static_cast<std::streamsize>(out.size()));

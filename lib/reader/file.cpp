@@ -1,4 +1,4 @@
-// `File`: ownership and access. What is right and wrong is decided in check*.cpp.
+// `File`: ownership and access. The rules are checked in check*.cpp.
 #include "check/check.h"
 #include "check/rule_codes.h"
 #include "halved_tree.h"

@@ -44,7 +44,7 @@ TEST(BrdfCommand, fileIsValidAndTellsWhatItIs) {
     EXPECT_EQ(info.at("axes")[2].at("resolution"), info.at("bins"));
 }
 
-// What is budgeted is what is stored.
+// The budget holds for the stored bytes.
 TEST(BrdfCommand, compressedFilesFillTheirBudget) {
     if (acdf_test::kSanitized) GTEST_SKIP() << "the same code as with trees of their own";
     const Folder folder;

@@ -114,7 +114,7 @@ TEST_F(LocalCommand, TheSameBytesForAnyNumberOfThreads) {
     }
 }
 
-// What is budgeted is what is stored.
+// The budget holds for the stored bytes.
 TEST_F(LocalCommand, CompressedFilesFillTheirBudget) {
     const int bytes = made({"--budget", "30000", "--compress", "zlib"})["bytes"];
     EXPECT_LE(bytes, 30000);

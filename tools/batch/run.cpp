@@ -53,7 +53,7 @@ void convert(const BatchJob& job, const std::string& folder, const MakeConversio
     make_folder(path.parent_path().string());
     const Stopwatch watch{result.seconds}; // the job's own work
     Output output(path.string(), true,
-                  input_paths(*conversion)); // what is there was found to be no more than an older file
+                  input_paths(*conversion)); // an existing output was found to be an older file of the same job
     const Converted made = conversion->convert(
         {progress, [&](const std::string& note) { result.notes.push_back(on_one_line(note)); }});
     output.write(made.bytes.data(), made.bytes.size());
@@ -183,7 +183,7 @@ private:
         set(false);
     }
 
-    /// What is thrown here was thrown while there was no memory to report it, or for a thread of the arena.
+    /// Exceptions here were thrown while there was no memory to report them, or for a thread of the arena.
     void run_in(tbb::task_arena& arena, std::size_t job) noexcept {
         JobResult& result = results_[job]; // this job's alone
         try {

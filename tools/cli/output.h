@@ -65,8 +65,8 @@ void write_output(const std::string& path, const std::vector<std::uint8_t>& byte
 /// Makes a folder, and those above it, where they are missing. Throws Failure.
 void make_folder(const std::string& path);
 
-/// A folder for outputs, made with those above it where they are missing. What was made is removed at the end where
-/// it is empty: a command that fails, or that a signal ends, leaves none.
+/// A folder for outputs, made with those above it where they are missing. Folders that were made are removed at the
+/// end where they are empty: a command that fails, or that a signal ends, leaves none.
 class OutputFolder {
 public:
     /// Throws Failure.

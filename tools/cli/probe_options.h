@@ -59,7 +59,7 @@ inline void add_domain(CLI::App& command, input::Domain& domain) {
         ->group("Input");
 }
 
-/// What is done with values that are no radiance, and with probes without any.
+/// Options for values that are not radiance, and for probes without any light.
 inline void add_repairs(CLI::App& command, input::ProbeOptions& options) {
     constexpr Named<build::BadPixels> policies[] = {
         {"zero", build::BadPixels::zero}, {"clamp", build::BadPixels::clamp}, {"error", build::BadPixels::error}};

@@ -37,9 +37,9 @@ struct ProbeTarget {
 };
 
 /// Reads a probe, makes its target on the grid that `options.domain` (not that of `target_options`) names, and
-/// reports what was assumed and what was mended. A lat-long probe on its own texels is read in bands of rows:
-/// memory holds the target, four bytes a texel for one channel with nearest lookup. Throws Error, and Failure where
-/// it has no energy.
+/// reports assumptions and repairs. A lat-long probe on its own texels is read in bands of rows: memory holds the
+/// target, four bytes a texel for one channel with nearest lookup. Throws Error, and Failure where it has no
+/// energy.
 ProbeTarget load_target(const std::string& path, const input::ProbeOptions& options,
                         const builder::TargetOptions& target_options, const Note& note);
 

@@ -39,7 +39,7 @@ struct SceneOption {
     void check(const CLI::App& command) const;
     /// The option in one spelling, with the SHA-256 of each file. Throws input::Error.
     std::string text() const;
-    /// Empty where no scene was given; what was read is noted.
+    /// Empty where no scene was given; reading is noted.
     std::vector<builder::SceneNormal> read(const Note& note) const;
     const input::SceneOptions& input() const { return input_; }
     /// What is left to turn after reading.

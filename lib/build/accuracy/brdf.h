@@ -12,7 +12,7 @@
 
 namespace acdf::build {
 
-/// Of one view: p is the stored pdf, f = rho cos(theta_i), both over the directions wi.
+/// Accuracy for one view: p is the stored pdf, f = rho cos(theta_i), both over the directions wi.
 struct ViewAccuracy {
     compress::View view;
     double albedo = 0.0; ///< integral of f; 0: all of the rest is 0 but `share_above_horizon`

@@ -16,8 +16,8 @@ namespace acdf::build {
 
 using Normal = std::array<float, 3>;
 
-/// Of one normal n: f = g max(0, n . omega), with the cosine at the centres of texels (see FineTexels); p the
-/// stored pdf, sr^-1. g^2 is that of compress::Target: with a filter or several channels, a texel's mean
+/// Accuracy for one normal n: f = g max(0, n . omega), with the cosine at the centres of texels (see FineTexels); p
+/// the stored pdf, sr^-1. g^2 is that of compress::Target: with a filter or several channels, a texel's mean
 /// square; means of f are those of compress::Target::means.
 struct NormalAccuracy {
     double relative_variance = 0.0;   ///< of one sample of f/p, over its mean squared; infinite with a violation

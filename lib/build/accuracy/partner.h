@@ -17,7 +17,7 @@ struct PartnerAccuracy {
 PartnerAccuracy measure_beside_partner(const File& file, const compress::Target& target,
                                        const std::vector<Normal>& normals);
 
-/// Of all samples, how many to sample from that file for the least second moment of estimates, summed over normals
+/// The share of all samples to take from that file for the least second moment of estimates, summed over normals
 /// relative to their irradiance: a multiple of 1/32. 1 where no normal sees any light.
 double recommended_light_share(const File& file, const compress::Target& target,
                                const std::vector<Normal>& normals);

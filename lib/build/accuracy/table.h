@@ -12,7 +12,7 @@
 
 namespace acdf::build {
 
-/// Of one bin: p is its stored pdf, f its part of the table, p* = f / (integral of f).
+/// Accuracy of one bin: p is its stored pdf, f its part of the table, p* = f / (integral of f).
 struct BinAccuracy {
     /// Variance of one sample of the estimator f/p, over (integral of f)^2. Infinite with a support violation.
     double relative_variance = 0.0;

@@ -13,7 +13,7 @@ using BadTexels = builder::BadTexels;
 
 using Channels = std::array<float, 3>;
 
-/// What half floats end at: what is above it is infinite in their files.
+/// The largest half float: larger values are infinite in their files.
 constexpr Channels largest_half{65504.0f, 65504.0f, 65504.0f};
 
 /// The largest finite value of each channel, at least 0, of `count` RGB texels.

@@ -17,7 +17,7 @@ struct HorizonSquare {
     float mean_square = 0.0f; ///< of the pdf over the whole square
 };
 
-/// Those of one view; `albedo` > 0 is what its values are divided by.
+/// Squares at the horizon of one view, whose values are divided by `albedo` > 0.
 std::vector<HorizonSquare> horizon_squares(const Reflected& reflected, const HalfGrid& grid, const View& view,
                                            double albedo);
 

@@ -18,7 +18,7 @@ struct Halvings {
     std::size_t leaves() const { return axes.size() - codes.size(); }
 };
 
-/// What is left of a tree once it is stored.
+/// The part of a tree that is kept once it is stored.
 struct Quantised {
     Halvings halvings;
     double second_moment = 0.0; ///< sum of the squares of alone / p of all leaves, times p (PAPER.md §5)

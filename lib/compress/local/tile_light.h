@@ -28,7 +28,7 @@ public:
               const std::vector<AcdfBrightTile>& bright_tiles);
 
     std::size_t size() const { return tile_.size(); }
-    /// Of all light of a tile, whatever the cosine; 0: a light, or dark.
+    /// The cost of all light of a tile, whatever the cosine; 0: a bright tile, or dark.
     double whole(std::size_t tile) const { return tile_[tile].cost; }
     void look(const Direction& normal, TileView& out) const;
     /// From up to `views_at_once` normals at once: in little more time than from one, where they are close.

@@ -17,7 +17,7 @@ namespace {
 
 /// Splits of tiles that cells distinguish: with more of them there are fewer cells (docs/visibility.md).
 constexpr std::uint32_t kColumns = 127;
-/// The same beside portals, through which most samples are taken: cells that know these are worth more.
+/// The same for files with portals, through which most samples are taken: there cells gain more than columns do.
 constexpr std::uint32_t kColumnsBesidePortals = 31;
 /// Cells that have the same columns, in the mean.
 constexpr std::uint64_t kCellsOfRegion = 200;

@@ -6,7 +6,7 @@
 namespace acdf::input {
 
 /// Refuses a PLY file of which the header, or a list, claims more elements than the file has: the importer would
-/// ask for memory first, or take what is left of a file that was cut short. Reads the file once and holds a line of
+/// ask for memory first, or accept a file that was cut short. Reads the file once and holds a line of
 /// it. Throws Error.
 void check_ply_counts(const std::string& path);
 

@@ -11,7 +11,7 @@
 namespace acdf::measure {
 
 /// The mean of f/p over n samples; those below the horizon and those that sample nothing count as 0. With the full
-/// CDF this is its use "with rejection below the horizon": what is rejected is lost. To sample others instead one
+/// CDF this is its use "with rejection below the horizon": rejected samples are lost. To sample others instead one
 /// would have to know each normal's share of the flux above its horizon, by which their pdf grows.
 class SingleEstimator : public Estimator {
 public:

@@ -20,7 +20,7 @@ struct SamplerParts {
     std::vector<Part> parts;
 };
 
-/// The same in the hands of one thread, at a point.
+/// The parts as one thread uses them, at a point.
 class PartsAtPoint {
 public:
     PartsAtPoint(const SamplerParts& of, const ScenePoint& point);

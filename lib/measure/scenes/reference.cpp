@@ -105,7 +105,7 @@ private:
                 sum[k] += term[k];
             }
             const bool bright = flux > centres_.bright;
-            // What is at most that share of what is already summed cannot be more of the whole.
+            // A term of at most that share of the sum so far cannot be a larger share of the whole.
             if (bright || luminance(term) > kRefinedShare * so_far_)
                 candidates_.push_back({column, row, bright, term});
         }

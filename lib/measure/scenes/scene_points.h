@@ -59,7 +59,7 @@ public:
     bool hidden(const Vec3& wi) const;
     /// Whether anything can be in the way of light.
     bool shadowed() const { return !lonely_; }
-    /// The same point if nothing were.
+    /// The same point without occluders.
     ScenePoint in_the_open() const {
         ScenePoint out = *this;
         out.lonely_ = true;

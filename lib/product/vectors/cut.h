@@ -8,7 +8,7 @@
 
 namespace acdf {
 
-/// Those of the best instructions that the processor has, up to `most`; null: none.
+/// The functions for the best instructions that the processor has, up to `most`; null: none.
 const AcdfProductVectors* product_vectors(Instructions most = Instructions::avx512) noexcept;
 
 #if ACDF_BATCH_X86

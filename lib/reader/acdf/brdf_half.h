@@ -64,7 +64,7 @@ ACDF_INLINE uint32_t acdf_brdf_step(double position, uint32_t resolution) {
     return position < (double)resolution ? (uint32_t)position : resolution - 1;
 }
 
-/* The same for runtime tables, before what is behind the point is left out. */
+/* A position bounded by the last step, for runtime tables. */
 ACDF_INLINE double acdf_brdf_bounded(double position, uint32_t resolution) {
     const double last = (double)(int32_t)(resolution - 1);
     return position < last ? position : last;

@@ -79,7 +79,7 @@ ACDF_INLINE void acdf_store_weights(AcdfTwoWeights weights, double out[2]) {
 }
 #endif
 
-/* The same of bright tile `k` as its position sees it. */
+/* The weight of bright tile `k`, times the share of it that the point's position sees. */
 ACDF_FN double acdf_local_bright_tile_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
     const double weight = acdf_bright_tile_weight(&local->bright_tiles[k], point);
     return point->visibility.count > 0 ? weight * acdf_mixture_visibility(&point->visibility, 1 + k) : weight;
@@ -109,7 +109,7 @@ ACDF_INLINE double acdf_pair_weight(const AcdfLocalPoint* point, const AcdfBrigh
                                  : pair->share[i] * (height > 0.0 ? height : 0.0);
 }
 #ifdef ACDF_SSE2
-/* That of both. */
+/* acdf_pair_weight of both bright tiles of a pair. */
 ACDF_INLINE __m128d acdf_pair_weights(const AcdfHorizon* horizon, const AcdfBrightTilePair* pair, __m128d inverse) {
     const __m128d height = _mm_add_pd(_mm_add_pd(_mm_mul_pd(horizon->normal[0], _mm_loadu_pd(pair->direction[0])),
                                                  _mm_mul_pd(horizon->normal[1], _mm_loadu_pd(pair->direction[1]))),
@@ -123,7 +123,7 @@ ACDF_INLINE __m128d acdf_pair_weights(const AcdfHorizon* horizon, const AcdfBrig
 }
 #endif
 
-/* The same of light k by tables, without a branch. */
+/* The weight of bright tile k by tables, without a branch. */
 ACDF_INLINE double acdf_tabled_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
     const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local->tables) + k / 2;
 #ifdef ACDF_SSE2

@@ -10,7 +10,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* What is compiled now is code for a GPU, not that of the host around it. */
+/* This compilation is for a GPU, not for the host around it. */
 #if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__)
 #define ACDF_ON_GPU 1
 #endif

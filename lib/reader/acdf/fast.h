@@ -169,7 +169,7 @@ ACDF_INLINE double acdf_fast_sample_cell(const AcdfFastGrid* grid, double* u, Ac
     return (double)(int32_t)(of_line * in_line);
 }
 
-/* The same of the cell that holds a square; 0 where no sample falls. */
+/* The share of the cell that holds a square, and its range; 0 where no sample falls. */
 ACDF_INLINE double acdf_fast_find_cell(const AcdfFastGrid* grid, const uint32_t* square, AcdfRange* range) {
     const uint32_t cell = (square[0] - range[0].low) >> grid->shift[0];
     const uint32_t line = (square[1] - range[1].low) >> grid->shift[1];

@@ -152,7 +152,7 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_sample_at(const AcdfLocal
     out.pdf = acdf_local_combined_pdf(local, point, out.direction, out.pdf);
     return acdf_returned(&out);
 }
-/* The latter; `weighed` as acdf_local_fast_sample_cell has it. */
+/* Samples where rows of the fast shape are all there is; `weighed` as in acdf_local_fast_sample_cell. */
 ACDF_INLINE AcdfDirectionSample acdf_local_only_fast_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                             const int weighed, double u0, double u1) {
     AcdfDirectionSample out;
@@ -169,21 +169,21 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_fast_sample_at(const AcdfLoca
 }
 
 /* Samples a direction; u0 (phi) and u1 (theta) in [0, 1]. Values outside are clamped, NaN counts as 0. The pdf is
- * in sr^-1; it is 0, and the direction is unset, where the normal is not valid or nothing shines on it. */
+ * in sr^-1; it is 0, and the direction is unset, where the normal is not valid or no light reaches it. */
 ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const AcdfLocalPoint* point, double u0,
                                                  double u1) {
     return acdf_local_only_fast(local, point) ? acdf_local_fast_sample_at(local, point, u0, u1)
                                               : acdf_local_any_sample_at(local, point, u0, u1);
 }
 
-/* The same for a normal that serves once, by a point as others have it. */
+/* Samples for a normal of a single call, in any file: through an AcdfLocalPoint. */
 ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_new_sample(const AcdfLocal* local, const float normal[3],
                                                                   double u0, double u1) {
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
     return acdf_local_sample_at(local, &point, u0, u1);
 }
-/* And of the fast shape with tables, by one that nobody else sees: what is in registers stays there. */
+/* Samples for a normal of a single call in the fast shape with tables: the point stays in registers. */
 ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_new_fast_sample(const AcdfLocal* local, const float normal[3],
                                                                    double u0, double u1) {
     AcdfLocalPoint point;
@@ -195,7 +195,7 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_new_fast_sample(const AcdfLoc
     if (point.what != ACDF_LOCAL_FAST) return acdf_local_any_new_sample(local, normal, u0, u1);
     return acdf_local_only_fast_sample(local, &point, 0, u0, u1);
 }
-/* In any. */
+/* Samples for a normal of a single call; as acdf_local_sample_at. */
 ACDF_FN AcdfDirectionSample acdf_local_sample(const AcdfLocal* local, const float normal[3], double u0, double u1) {
     return local->tables && local->fast.grid ? acdf_local_new_fast_sample(local, normal, u0, u1)
                                              : acdf_local_any_new_sample(local, normal, u0, u1);

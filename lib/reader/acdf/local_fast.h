@@ -73,13 +73,13 @@ ACDF_INLINE uint32_t acdf_local_lit(const AcdfLocalPoint* point, uint32_t i) {
     return 2u * point->pair[i / 2] + i % 2;
 }
 
-/* A light that is sampled: its number, its weight, and the sum of those before it. */
+/* A bright tile that is sampled: its number, its weight, and the sum of those before it. */
 typedef struct AcdfSampledBrightTile {
     uint32_t number;
     double weight, before;
 } AcdfSampledBrightTile;
 
-/* Of those that a point has weighed the one that x of their sum samples. */
+/* Samples one of the bright tiles that a point has weighted, by x of the sum of weights. */
 ACDF_INLINE AcdfSampledBrightTile acdf_local_fast_bright_tile(const AcdfLocalPoint* point, double x) {
     uint32_t i = acdf_local_fast_passed(point, x);
     AcdfSampledBrightTile out;
@@ -90,7 +90,7 @@ ACDF_INLINE AcdfSampledBrightTile acdf_local_fast_bright_tile(const AcdfLocalPoi
     return out;
 }
 
-/* The same where they are not weighed, but their facet is known: the first one that takes the sum of
+/* Samples a bright tile where they are not weighted, but their facet is known: the first one that takes the sum of
  * acdf_local_tabled_bright_tiles above x. Weight 0 where x is the whole of them, or rounded to it: *whole becomes
  * that.
  */
@@ -220,8 +220,8 @@ ACDF_INLINE float acdf_local_fast_at_least(const AcdfLocal* local, const AcdfGri
     if (pdf >= 3.402823466e38) return 3.402823466e38f;
     return (float)(pdf > least ? pdf : least);
 }
-/* Of any such cell: 0 where its probability is, which that of half of all directions is. Nobody guesses it, and to
- * know it all the rest is waited for: so no branch asks. */
+/* The pdf of any cell of the fast shape; 0 where its probability is 0, as for half of all directions. No branch
+ * tests for that: it would be guessed wrongly, after all else. */
 ACDF_INLINE float acdf_local_fast_cell_pdf(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
                                            const AcdfFastShare* share) {
     const double huge = share->of * 0x1p1000;

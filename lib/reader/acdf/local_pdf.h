@@ -139,7 +139,7 @@ ACDF_FN float acdf_local_spot_pdf(const AcdfLocal* local, const AcdfLocalPoint* 
     return p > 0.0 ? acdf_local_cell_pdf(local, &grid, direction, range, p) : 0.0f;
 }
 
-/* The same of the fast shape. */
+/* The pdf of what rows of the fast shape sample. */
 ACDF_INLINE float acdf_local_fast_pdf(const AcdfLocal* local, const AcdfLocalPoint* point,
                                       const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -191,7 +191,7 @@ ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint*
                                             : row;
 }
 
-/* Both parts together: `light` is that of the light, the other one is that of the cosine to the normal. */
+/* The pdf of the mixture of light and cosine: `light` is the pdf of the light's part. */
 ACDF_FN float acdf_local_combined_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
                                       float light) {
     const double x = point->surface[0], y = point->surface[1], z = point->surface[2];
@@ -233,7 +233,7 @@ ACDF_FN float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* po
                                               : acdf_local_any_pdf_at(local, point, direction);
 }
 
-/* The same for a normal that serves once, in files of codes that have tables. */
+/* The pdf for a normal of a single call, in files of codes that have tables. */
 ACDF_OUTLINE_ON_CPU float acdf_local_new_pdf(const AcdfLocal* local, const float normal[3],
                                              const float direction[3]) {
     const AcdfLocalSpot spot = acdf_local_spot(local, local->tables, direction);
@@ -242,14 +242,14 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_pdf(const AcdfLocal* local, const float
     if (point.what == ACDF_LOCAL_NOTHING) return 0.0f;
     return acdf_local_combined_pdf(local, &point, direction, acdf_local_spot_pdf(local, &point, direction, &spot));
 }
-/* And of any file, by a point as others have it. */
+/* The pdf for a normal of a single call, in any file: through an AcdfLocalPoint. */
 ACDF_OUTLINE_ON_CPU float acdf_local_any_new_pdf(const AcdfLocal* local, const float normal[3],
                                                  const float direction[3]) {
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
     return acdf_local_pdf_at(local, &point, direction);
 }
-/* And of the fast shape, whose point nobody else sees: what is in registers stays there. */
+/* The pdf for a normal of a single call in the fast shape: the point stays in registers. */
 ACDF_OUTLINE_ON_CPU float acdf_local_new_fast_pdf(const AcdfLocal* local, const float normal[3],
                                                   const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -270,7 +270,7 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_fast_pdf(const AcdfLocal* local, const 
     share = acdf_local_fast_find(local, &point, tile, square, range);
     return acdf_local_fast_cell_pdf(local, &grid, range, &share);
 }
-/* In any. */
+/* Pdf per steradian with which acdf_local_sample samples `direction` (unit) for that normal. */
 ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {
     if (local->tables)
         return local->fast.grid ? acdf_local_new_fast_pdf(local, normal, direction)

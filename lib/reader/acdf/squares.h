@@ -73,11 +73,11 @@ ACDF_INLINE uint32_t acdf_bytes_reach(uint32_t a, uint32_t b) {
     const uint32_t difference = (a | 0x80808080u) - (b & 0x7F7F7F7Fu);
     return (~a & b) | (~(a ^ b) & difference);
 }
-/* The same: whether each byte of a position lies from low to high. */
+/* Whether each byte of a position lies from low to high, as the highest bit of that byte. */
 ACDF_INLINE uint32_t acdf_bytes_within(uint32_t place, uint32_t low, uint32_t high) {
     return acdf_bytes_reach(place, low) & acdf_bytes_reach(high, place);
 }
-/* These bits as the four lowest ones: no sum of the product carries. */
+/* The highest bits of four bytes as the four lowest bits: no sum of the product carries. */
 ACDF_INLINE uint32_t acdf_four_bits(uint32_t bytes) { return (bytes >> 7 & 0x01010101u) * 0x01020408u >> 24; }
 /* A byte four times, less 128 as those of boxes are. */
 ACDF_INLINE uint32_t acdf_four_bytes(uint32_t number) { return (number ^ 0x80u) * 0x01010101u; }

@@ -35,13 +35,13 @@ public:
     ACDF_METHOD float pdf(const float normal[3], const float direction[3]) const noexcept {
         return acdf_local_pdf(&data_, normal, direction);
     }
-    /// Both for a shading point, whose normal is looked up once for all of its samples.
+    /// A shading point: its normal is looked up once for all calls of sample and pdf that take the point.
     ACDF_METHOD AcdfLocalPoint at(const float normal[3]) const noexcept {
         AcdfLocalPoint point;
         acdf_local_at(&data_, normal, &point);
         return point;
     }
-    /// The same for a point of the scene that the file was made for, `position` in the scene's own coordinates.
+    /// A shading point of the scene that the file was made for, `position` in the scene's own coordinates.
     /// Samples go towards light that reaches it, but for a small share. Outside of the scene's bounds, and of files
     /// that do not store visibility cells, the normal alone counts. Where the scene has changed since, sampling
     /// stays unbiased, and is noisier.

@@ -10,7 +10,7 @@ using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using ull = unsigned long long;
 
-// Those of an environment.
+// Axes of an environment.
 constexpr u32 kAxes = 2;
 
 // The open ends of a tree are at most one a level of each axis, and one more.

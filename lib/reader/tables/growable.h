@@ -66,7 +66,7 @@ private:
     bool failed_ = false;
 };
 
-/// So many words, up to whole cache lines.
+/// A count of words, rounded up to whole cache lines.
 inline std::size_t whole_lines(std::size_t words) { return (words + 15) & ~std::size_t{15}; }
 
 /// Copies an array to the word `at` of tables and moves that past it, to a whole line: what is left of the last one

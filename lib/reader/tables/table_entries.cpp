@@ -36,13 +36,13 @@ struct ReachedSide {
     EntrySpan positions, numbers; ///< that lie in it
 };
 
-/// And all of them.
+/// What a path through the tree has led to, on all axes.
 struct Reached {
     double probability = 1.0;
     ReachedSide side[ACDF_MAX_AXES];
 };
 
-/// Of one of both grids.
+/// The members of one of the two grids: of positions or of numbers.
 struct EntryKind {
     EntrySpan ReachedSide::*spans;
     u32 AcdfEntryAxis::*stride; ///< entries to the next one

@@ -26,9 +26,9 @@ public:
     bool done() const noexcept { return done_; }
     /// Twice the units of the tree, and some.
     std::size_t most_steps() const noexcept { return most_steps_; }
-    /// Of all trees.
+    /// Cells of all trees.
     std::uint32_t cells() const noexcept { return cells_; }
-    /// Below the curve at `at`, which has a header; at most kMany.
+    /// Cells below the curve at `at`, which has that header; at most kMany.
     std::uint32_t cells(std::uint32_t at, std::uint32_t header) const noexcept {
         return ends(header) ? header >> ACDF_CURVE_SEGMENTS_SHIFT : below_[at / 2];
     }

@@ -1,4 +1,4 @@
-// From an array to a table file: how good the fit is, and that what is measured is what is stored.
+// From an array to a table file: how good the fit is, and that measurements are of the stored pdf.
 #include "tests/inputs/table_files.h"
 #include "tests/lib/compress/chi_square.h"
 

@@ -1,5 +1,5 @@
-// Growing partitions for a goal: what is forgotten changes no tree, what is kept is bounded by what the goal can
-// use, and the size of a tree is known before it is made.
+// Growing partitions for a goal: forgetting changes no tree, the parts that are kept are bounded by what the goal
+// can use, and the size of a tree is known before it is made.
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
 

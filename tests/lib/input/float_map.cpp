@@ -1,4 +1,4 @@
-// Portable float maps: what we read ourselves is what OpenImageIO reads, and what is unusual is left to it.
+// Portable float maps: our own reader reads the same as OpenImageIO, and leaves unusual files to it.
 #include "tests/inputs/float_map.h"
 #include "tests/lib/input/write.h"
 

@@ -46,7 +46,7 @@ double direction_at(double column, double row, std::uint32_t columns, AcdfParame
     return sine;
 }
 
-// Seams, poles and the sides of the square among them: what is found is the f whose moments files are fitted to.
+// Seams, poles and the sides of the square among them: lookups find the f whose moments files are fitted to.
 TEST(MapLookup, HasTheMomentsThatAreFitted) {
     constexpr int parts = 40;
     for (const AcdfParameterization grid : {ACDF_PARAM_LATLONG, ACDF_PARAM_OCTAHEDRAL}) {

@@ -51,7 +51,7 @@ int keep_replacing(const std::string& path) {
     }
 }
 
-// Ended two hundred times at a random moment: what is there is whole, and what is left over the next one removes.
+// Ended two hundred times at a random moment: each file is whole, and the next run removes what was left over.
 TEST(Kill, atAnyMomentTheFileIsWhole) {
     const Folder folder;
     const std::string out = folder / "out", where = std::filesystem::path(out).parent_path().string();

@@ -138,7 +138,7 @@ TEST_F(RenderCommand, RefusesOutputsBeforeAnyLongWork) {
     std::filesystem::create_directories(folder / "out/cosine.png");
     refused(render("out", {"--force"}), "cosine.png: is a folder");
     EXPECT_EQ(files("out"), std::set<std::string>{"cosine.png"});
-    // What is read is not written over, either.
+    // Inputs are not overwritten, either.
     std::filesystem::copy(folder / "scene.json", folder / "render.json");
     refused(run_acdf(
                 {"render", "--scene", folder / "render.json", "--data", folder / "", "-o", folder / "", "--force"}),

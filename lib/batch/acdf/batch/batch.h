@@ -42,7 +42,7 @@ public:
     void pdf(const AcdfLocalPoint& point, const float (*directions)[3], std::size_t count,
              float* out) const noexcept;
 
-    /// Those that serve.
+    /// The instructions in use.
     Instructions instructions() const noexcept { return instructions_; }
 
 private:
@@ -73,7 +73,7 @@ public:
 
     /// Bytes of tables of its own; 0 where there are none.
     std::size_t bytes() const noexcept;
-    /// Those that serve.
+    /// The instructions in use.
     Instructions instructions() const noexcept { return instructions_; }
 
 private:

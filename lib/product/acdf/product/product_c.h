@@ -37,7 +37,7 @@ void acdf_product_samples(const AcdfLocal* light, const AcdfBrdf* brdf, const Ac
 /* The pdf in sr^-1 of a unit direction; exactly that of the sample for what it returned. */
 float acdf_product_pdf(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point,
                        const float direction[3]);
-/* The same of directions[i] into out[i], i < count, to the bit. */
+/* acdf_product_pdf of directions[i] into out[i], i < count, to the bit. */
 void acdf_product_pdfs(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point, size_t count,
                        const float (*directions)[3], float* out);
 
@@ -50,7 +50,7 @@ typedef struct AcdfLobe {
     float (*pdf)(const void* data, const float wo[3], const float wi[3]); /* of `sample`, sr^-1 */
 } AcdfLobe;
 
-/* The same five with such a BRDF. */
+/* The five functions above with a renderer's own BRDF. */
 void acdf_product_lobe_at(const AcdfLocal* light, const AcdfLobe* lobe, int parts, const float frame[9],
                           const float wo[3], AcdfProductPoint* point);
 AcdfDirectionSample acdf_product_lobe_sample(const AcdfLocal* light, const AcdfLobe* lobe,

@@ -34,8 +34,8 @@ struct PointOfLobe {
         for (int k = 0; k < 3; ++k) wi[k] *= scale;
     }
 
-    /// The lobe's value and pdf in directions above the surface, in its frame, at most `Most`: told(i, value,
-    /// pdf) of each. `many`: about those, as is worth while for more than a few.
+    /// The lobe's value and pdf in directions above the surface, in its frame, at most `Most`: calls told(i, value,
+    /// pdf) for each. `many`: about those, as is worth while for more than a few.
     template <std::size_t Most, class Told>
     ACDF_METHOD void look(int count, bool many, const float (*wi)[3], const Told& told) const noexcept {
         float pdf[Most];

@@ -21,14 +21,14 @@ typedef struct AcdfProductVectors {
                             const double (*u)[2], size_t count, AcdfDirectionSample* out);
     void (*fast_cut_pdf)(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
                          const float (*directions)[3], size_t count, float* out);
-    /* Of any BRDF file. */
+    /* Samples of any BRDF file. */
     void (*brdf_sample)(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double (*u)[2], size_t count,
                         AcdfDirectionSample* out);
     void (*brdf_pdf)(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], size_t count,
                      float* out);
 } AcdfProductVectors;
 
-/* Those that the linked library acdf-product has for this processor; null: none. */
+/* The functions that the linked library acdf-product has for this processor; null: none. */
 const AcdfProductVectors* acdf_product_vectors(void);
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-// Files of maps of every layout: what is printed of them is what a sum over the map's own texels gives, with the
+// Files of maps of every layout: their printed accuracy is that of a sum over the map's own texels, with the
 // map's own lookup and the reader's pdf, written here once more.
 #include "build/probe/source_target.h"
 #include "build/accuracy/environment.h"

@@ -65,7 +65,7 @@ TEST(FileSamplers, EnvironmentAndLocalFilesSampleByTheirPdf) {
     EXPECT_EQ(everywhere->bytes(), bytes.size() + environment.table_bytes());
     EXPECT_GT(map.file.table_bytes(), 0u);
     EXPECT_EQ(local->bytes(), map.bytes.size() + map.file.table_bytes());
-    // What is inflated is in memory, too.
+    // Inflated chunks are in memory, too.
     const std::vector<std::uint8_t> packed =
         acdf::compress::store(acdf::compress::fit(t, fit).tree, description, ACDF_CODEC_ZLIB);
     acdf::File inflated;

@@ -96,7 +96,7 @@ TEST_P(LocalBaselineVariance, ResamplingHasTheVarianceOfAveragedCandidates) {
     }
 }
 
-// What is kept is spread nearly like f: the more candidates, the more so; the weight alone would not show it.
+// Kept samples are spread nearly like f: the more candidates, the more so; the weight alone would not show it.
 TEST(LocalBaselines, ResamplingKeepsWhatTheTargetFavours) {
     const Target t = sphere_target(64, 32, smooth_sky);
     const Resampling baseline(t, 64);

@@ -311,7 +311,7 @@ TEST(LocalRules, whatIsAtTheirLimitsIsRight) {
     one.codes.resize(1);
     one.bins.assign(6, {0, 1.0f});
     expect_valid(one.encode());
-    one.bright_tiles.resize(1); // the only tile: what is left for the mixture is nothing
+    one.bright_tiles.resize(1); // the only tile: nothing is left for the mixture
     one.bright_tiles[0].high = {8, 8};
     for (BinSpec& bin : one.bins) bin.share = 0.0f;
     expect_valid(one.encode());
