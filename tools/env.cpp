@@ -221,9 +221,8 @@ Converted EnvConversion::convert(const Listener& listener) {
     options.normals = scene_.read(listener.note);
     const auto partner = options.mis.kind;
     if (!scene_.given() && (partner == ACDF_PARTNER_COSINE || partner == ACDF_PARTNER_BRDF))
-        listener.note(
-            "made for all normals alike; where most of what is seen faces the sky, --scene with its normals, or "
-            "else --mis mean, has less noise");
+        listener.note("made for all normals alike; if most visible surfaces face the sky, --scene with their "
+                      "normals, or else --mis mean, has less noise");
     if (scene_.given()) options.normals_text = scene_.text();
     builder::Environment result;
     require_built(source, builder::environment(loaded.target, options, result, told(listener.progress)));

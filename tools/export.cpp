@@ -157,7 +157,7 @@ void add_export(CLI::App& program, int& exit_code) {
         "acdf export sky.acdf --target glsl -o sky.glsl --tables sky.bin\n"
         "acdf export sky.acdf --target wgsl --tables sky.bin > sky.wgsl\n"
         "acdf export sky.acdf --target c -o sky.h               # functions and tables in one header\n"
-        "acdf export nickel.acdf --target glsl --tables nickel.bin > walk.glsl   # also serves local files\n"
+        "acdf export nickel.acdf --target glsl --tables nickel.bin > lobe.glsl   # also serves local files\n"
         "acdf export sky.acdf --target json --tables sky.bin    # how large the texture is"));
     command->callback([options, &exit_code] {
         run(*options);

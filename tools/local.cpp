@@ -252,7 +252,7 @@ Converted LocalConversion::convert(const Listener& listener) {
     if (!result.accuracy.combined && gain(result) < kWorthwhile) {
         char text[160];
         std::snprintf(text, sizeof text,
-                      "knowing the normal lowers the variance by a factor of %.2f only; `acdf env` would do about "
+                      "a pdf for each normal lowers the variance by a factor of only %.2f; `acdf env` does about "
                       "as well, in a smaller file",
                       gain(result));
         listener.note(text);

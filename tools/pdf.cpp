@@ -182,7 +182,7 @@ void add_pdf(CLI::App& program, int& exit_code) {
                     "fall. Blank lines and comments after a # are skipped. Of a table: points x0 x1 ... in the "
                     "units of its sampled axes, pdfs per product of these units.",
                     "echo '0 0 1' | acdf pdf sky.acdf\n"
-                    "acdf pdf sky.acdf directions.csv --csv -o densities.csv\n"
+                    "acdf pdf sky.acdf directions.csv --csv -o pdfs.csv\n"
                     "acdf sample local.acdf -n 9 --normal 0,0,1 | acdf pdf local.acdf --normal 0,0,1\n"
                     "acdf sample sky.acdf -n 1000 | acdf pdf sky.acdf"));
     command->callback([options, &exit_code] {

@@ -187,7 +187,7 @@ void add_sample(CLI::App& program, int& exit_code) {
         "acdf sample sky.acdf -n 1000 > directions.csv\n"
         "acdf sample sky.acdf -n 4096 --sequence sobol -o directions.csv\n"
         "acdf sample local.acdf -n 1000 --normal 0,0.6,0.8 > directions.csv\n"
-        "acdf sample sky.acdf -n 1000 | acdf pdf sky.acdf      # the densities again"));
+        "acdf sample sky.acdf -n 1000 | acdf pdf sky.acdf      # the same pdfs"));
     command->callback([options, &exit_code] {
         run(*options);
         exit_code = exit_done;

@@ -44,7 +44,8 @@ std::string text(const BadValues& bad, const std::vector<std::uint32_t>& shape) 
     add(bad.nan, "NaN");
     add(bad.infinite, "infinite");
     add(bad.negative, "negative");
-    return "it has numbers that are no density: " + kinds + ", the first at [" + index_text(shape, bad.first) + "]";
+    return "it has numbers that a pdf cannot have: " + kinds + ", the first at [" + index_text(shape, bad.first) +
+           "]";
 }
 
 std::string index_text(const std::vector<std::uint32_t>& shape, std::uint64_t flat) {

@@ -45,7 +45,7 @@ BrdfAccuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compres
                            const std::vector<compress::View>& views, Sides sides) {
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
-        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+        throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
     BrdfAccuracy out = summary(measure_views(file, reflected, views, sides));
     out.cells = brdf_cells(file);
     return out;

@@ -64,14 +64,14 @@ void recommend(const std::vector<std::uint8_t>& bytes, const compress::Target& t
 std::string out_of_budget(std::uint64_t budget, const compress::Description& description) {
     compress::Halvings leaf;
     leaf.axes = {-1};
-    return "a size of " + std::to_string(budget) + " bytes is out of reach; the least that can be had is " +
+    return "a size of " + std::to_string(budget) + " bytes is out of reach; the smallest possible is " +
            std::to_string(compress::store(leaf, description).size());
 }
 
 Accuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::Target& target) {
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
-        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+        throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
     return measure_environment(file, target);
 }
 

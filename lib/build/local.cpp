@@ -60,7 +60,7 @@ Local measured(std::vector<std::uint8_t> bytes, const compress::Target& target, 
     const std::vector<Normal> normals = test_normals(options.scene, kTestNormals);
     File file;
     if (const Status status = File::from_memory(out.bytes.data(), out.bytes.size(), file); !status.ok())
-        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+        throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
     out.accuracy = summary(measure_normals(file, target, normals));
     out.normals = static_cast<std::uint32_t>(normals.size());
     return out;
@@ -137,7 +137,7 @@ struct OutOfReach : std::runtime_error {
 
     OutOfReach(std::uint64_t budget, std::uint64_t least_bytes)
         : std::runtime_error("a size of " + std::to_string(budget) +
-                             " bytes is out of reach; the least that can be had is about " +
+                             " bytes is out of reach; the smallest possible is about " +
                              std::to_string(least_bytes)),
           least(least_bytes) {}
 };
@@ -175,7 +175,7 @@ void add_visibility(LocalDraft& draft, const compress::Target& target, const Loc
     const std::vector<std::uint8_t> bytes = compress::store(draft.tree, draft.description);
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
-        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+        throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
     compress::VisibilitySize size;
     const std::uint64_t record =
         (sizeof(AcdfChunk) + ACDF_ALIGNMENT) * (options.visibility.portals.empty() ? 1 : 2);

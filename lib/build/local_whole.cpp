@@ -26,7 +26,7 @@ double relative_variance(const compress::Target& target, compress::EncodedTree t
         tree, compress::environment_description(target.columns, target.rows, target.parameterization));
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
-        throw std::logic_error(std::string("the tree just made is not accepted: ") + status.message);
+        throw std::logic_error(std::string("the reader refuses the tree just made: ") + status.message);
     return measure_environment(file, target).relative_variance;
 }
 

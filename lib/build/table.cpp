@@ -47,7 +47,7 @@ void check_options(const std::vector<std::uint32_t>& shape, const TableOptions& 
         throw OptionError("the array has " + axes + ", but there are " + std::to_string(options.names.size()) +
                           " names");
     if (!options.ranges.empty() && options.ranges.size() != shape.size())
-        throw OptionError("one range an axis is needed");
+        throw OptionError("each axis needs a range");
     std::set<std::string> seen;
     for (const std::string& name : options.names) {
         if (name.empty() || name.size() > 15 || name.find('\0') != std::string::npos)
@@ -150,7 +150,7 @@ compress::Metadata metadata(const std::string& name, const std::string& sha256, 
 File open_made(const std::vector<std::uint8_t>& bytes) {
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
-        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+        throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
     return file;
 }
 
@@ -203,7 +203,7 @@ Table build_table(const Array& array, const std::string& source_name, const std:
     Table out;
     out.total = description.total = energy.back() * array.scale * volume(description.axes);
     if (!(out.total >= DBL_MIN && out.total <= DBL_MAX))
-        throw std::invalid_argument("its integral over the ranges is no number that a double holds; scale it");
+        throw std::invalid_argument("its integral over the ranges is not a number that a double holds; scale it");
     description.shares = shares(energy);
     std::fill(description.channel_weights, description.channel_weights + 3, 0.0);
     description.channel_weights[0] = 1.0; // a table has one channel

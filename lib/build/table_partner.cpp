@@ -73,7 +73,7 @@ struct Densities {
             double volume = 1.0;
             for (std::size_t axis = 0; axis < grid.dimensions(); ++axis) {
                 const AcdfRange& range = cell.range[grid.axes[axis]];
-                if (range.tilt != 0.0) throw std::invalid_argument("tables of tilted density are not measured");
+                if (range.tilt != 0.0) throw std::invalid_argument("tables with tilted cells are not measured");
                 volume *= double(range.high - range.low) / grid.shape[axis];
             }
             fill(grid, cell, 0, 0, cell.probability / volume, p);

@@ -42,7 +42,8 @@ Target transposed(const Target& target) {
 
 void refuse_overflow(const Target& target) {
     if (!std::all_of(target.values.begin(), target.values.end(), [](float v) { return std::isfinite(v); }))
-        throw std::invalid_argument("radiance whose channels together are more than a float holds; scale it down");
+        throw std::invalid_argument(
+            "the channels of the radiance add up to more than a float holds; scale it down");
 }
 
 bool has_energy(const Target& target) {

@@ -51,7 +51,7 @@ void refuse_converted_line_ends(const std::string& path, unsigned least) {
     if (found.lf == 0 && found.binary_crlf >= (text_before ? 1 : least))
         throw input_error(path,
                           "its line ends were converted (each LF is a CR LF now), by Git or a transfer in text "
-                          "mode, but it is no text; fetch it again as binary (in .gitattributes: -text)");
+                          "mode, but it is not text; fetch it again as binary (in .gitattributes: -text)");
 }
 
 std::string maybe_converted_line_ends(const std::string& path) {

@@ -109,7 +109,7 @@ private:
             if (lengths.size() > 64) fail("'shape' has more than 64 lengths");
             comma = accept(',');
         }
-        if (lengths.size() == 1 && !comma) fail("'shape' is no tuple");
+        if (lengths.size() == 1 && !comma) fail("'shape' is not a tuple");
         return checked(lengths);
     }
 
@@ -172,7 +172,7 @@ NpyHeader parse_npy_header(const std::string& name, const std::uint8_t* data, st
     if (size >= 4 && std::memcmp(data, archive, sizeof archive) == 0)
         throw input_error(name, "it is an archive (.npz); save one array with numpy.save");
     if (size < 6 || std::memcmp(data, magic, sizeof magic) != 0)
-        throw input_error(name, "it is no .npy file; save the array with numpy.save");
+        throw input_error(name, "it is not an .npy file; save the array with numpy.save");
     if (size < 10) throw input_error(name, "it ends in its header; copy it again");
     const unsigned major = data[6], minor = data[7];
     if (major < 1 || major > 3 || minor != 0)

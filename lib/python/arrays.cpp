@@ -25,7 +25,7 @@ py::array numbers(const py::handle& given, const char* name, const char* kinds) 
 }
 
 void no_memory(const char* name) {
-    PyErr_Format(PyExc_MemoryError, "%s: no memory for a copy in the layout that is worked on", name);
+    PyErr_Format(PyExc_MemoryError, "%s: no memory for a copy in the layout that acdf uses", name);
     throw py::error_already_set();
 }
 

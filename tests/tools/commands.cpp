@@ -125,7 +125,7 @@ TEST_F(Commands, WrongUsageIsExitCode2AndOneLine) {
                           "--names: needs a value");
     expect_one_line_error(run_acdf({"table", sky, "-o", folder / "out", "--names", "a,b,,c"}), 2,
                           "--names: needs a value between all commas");
-    expect_one_line_error(run_acdf({"sweep", sky, "-o", "-"}), 1, "stdout: is no folder");
+    expect_one_line_error(run_acdf({"sweep", sky, "-o", "-"}), 1, "stdout: is not a folder");
     expect_one_line_error(run_acdf({"table", sky, "-o", folder / "out", "--mis", ""}), 2, "--mis: needs a value");
     for (const char* seed : {"18446744073709551616", "-1", "0x10", "1e3", " 1", "+1"})
         expect_one_line_error(run_acdf({"sample", sky, "-n", "1", "--seed", seed}), 2, seed);

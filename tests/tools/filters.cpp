@@ -104,7 +104,7 @@ TEST_F(Filters, ANearestFileIsBiasedUnderBilinearLookups) {
     EXPECT_EQ(measured(file, probe)["support_violations"], 0);
     const Result bilinear = run_acdf({"measure", file, "--against", probe, "--filter", "bilinear", "--json", "-q"});
     EXPECT_EQ(bilinear.code, 1);
-    EXPECT_NE(bilinear.err.find("its density is 0 where"), std::string::npos) << bilinear.err;
+    EXPECT_NE(bilinear.err.find("its pdf is 0 where"), std::string::npos) << bilinear.err;
     EXPECT_GT(json::parse(bilinear.out)["support_violations"], 0);
 }
 

@@ -180,10 +180,10 @@ TEST_F(Hostile, CommandsThatFailLeaveNoFolder) {
         "objects": [{"sphere": {"centre": [0, 0, 0], "radius": 1}, "brdf": "lambert"}],
         "samples": 1, "samplers": ["portals"]})";
     expect_failure({"render", "--scene", scene, "-o", out, "-q"}, 1, "the scene has no portals");
-    expect_failure({"sweep", probe, "-o", out, "--kind", "brdf", "-q"}, 1, "it is no BRDF file");
+    expect_failure({"sweep", probe, "-o", out, "--kind", "brdf", "-q"}, 1, "it is not a BRDF file");
     EXPECT_EQ(folder.entries(), 2u); // the probe and the scene
     ASSERT_EQ(mkdir((folder / "a").c_str(), 0700), 0);
-    expect_failure({"sweep", probe, "-o", folder / "a", "--kind", "brdf", "-q"}, 1, "it is no BRDF file");
+    expect_failure({"sweep", probe, "-o", folder / "a", "--kind", "brdf", "-q"}, 1, "it is not a BRDF file");
     EXPECT_EQ(folder.entries(), 3u); // the folder was there before
 }
 
@@ -301,7 +301,7 @@ TEST_F(Hostile, ASourceThatAFileDoesNotStandForIsRefused) {
         EXPECT_GT(json::parse(result.out).at("support_violations").get<int>(),
                   0); // figures are printed all the same
         EXPECT_EQ(lines_in(result.err), 1u) << result.err;
-        EXPECT_NE(result.err.find("does not stand for " + there), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("is not a file of " + there), std::string::npos) << result.err;
     }
     const std::string square = folder / "square.pfm";
     write(square, 70, 16);
@@ -325,7 +325,7 @@ TEST_F(Hostile, ABoundOnWeightsThatIsOutOfReachNamesWhatItTakes) {
     };
     const Result result = bounded("1.5");
     EXPECT_EQ(result.code, 1);
-    const std::string before = "a largest weight of 1.5 is out of reach; the least that can be had is ";
+    const std::string before = "a largest weight of 1.5 is out of reach; the smallest possible is ";
     const std::size_t at = result.err.find(before);
     ASSERT_NE(at, std::string::npos) << result.err;
     const double least = std::stod(result.err.substr(at + before.size()));
@@ -342,7 +342,7 @@ TEST_F(Hostile, MapsBeyondTheFormatAreRefusedBeforeTheyAreRead) {
 TEST_F(Hostile, ReportsThatAreNoneAreToldWithoutExceptions) {
     const std::string report = folder / "report.json";
     for (const auto& [text, what] :
-         std::vector<std::pair<std::string, std::string>>{{"{\"batch\"", "no JSON from byte"},
+         std::vector<std::pair<std::string, std::string>>{{"{\"batch\"", "not JSON from byte"},
                                                           {"{\"batch\": 3}", "a key is missing"},
                                                           {"[]", "a key is missing"}}) {
         write_text(report, text);

@@ -159,7 +159,7 @@ TEST_F(LocalCommand, SaysWhereTheNormalGainsNothing) {
     const json report =
         made({"--budget", "40kB", "--scene", folder / "floor.txt", "--cosine-share", "0.5"}, folder / "lamp.pfm");
     EXPECT_LT(report["gain"], 1.5);
-    EXPECT_NE(messages.find("`acdf env` would do about as well"), std::string::npos) << messages;
+    EXPECT_NE(messages.find("`acdf env` does about as well"), std::string::npos) << messages;
 }
 
 TEST_F(LocalCommand, TheFastShape) {
@@ -235,7 +235,7 @@ TEST_F(LocalCommand, ChoosesTheShape) {
 
 TEST_F(LocalCommand, TheLeastSizeThatIsToldCanBeHad) {
     ACDF_NOT_SANITIZED();
-    const std::string told = "the least that can be had is about ";
+    const std::string told = "the smallest possible is about ";
     for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
              {}, {"--normals", "20"}, {"--shape", "fast"}, {"--mis", "cosine"}, {"--compress", "zlib"}}) {
         std::vector<std::string> words{"local", probe, "-o", output, "-q", "--force"};

@@ -68,7 +68,7 @@ std::string thumbnail(const std::string& path, const std::string& name) {
         return "";
     }
     const DensityRange range = automatic_range(image);
-    return html_image(encode_png(false_colour(image, range), {"acdf", "density in false colours"}), image.map.width,
+    return html_image(encode_png(false_colour(image, range), {"acdf", "pdf in false colours"}), image.map.width,
                       image.map.height, shows + ", " + to_string(range) + " per steradian");
 }
 
@@ -102,13 +102,12 @@ const char gallery_mark[] = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta 
 std::string gallery_page(const BatchReport& report, const std::string& folder, const std::vector<PlannedJob>& plan,
                          const MakeConversion& make) {
     const std::size_t failed = report.count(JobResult::Status::failed), made = report.jobs.size() - failed;
-    std::string out = gallery_mark + std::string(closed_page_policy) + "<style>" + kStyle +
-                      "</style>\n</head>\n<body>\n<header>\n<h1>" + std::to_string(made) +
-                      (made == 1 ? " file" : " files") +
-                      (failed > 0 ? ", " + std::to_string(failed) + " failed" : "") +
-                      "</h1>\n<p>Sources, and beside them densities in false colours, logarithmic, from violet "
-                      "over green to red; each picture "
-                      "has a range of its own. Dark grey: no sample falls there.</p>\n</header>\n<main>\n";
+    std::string out =
+        gallery_mark + std::string(closed_page_policy) + "<style>" + kStyle +
+        "</style>\n</head>\n<body>\n<header>\n<h1>" + std::to_string(made) + (made == 1 ? " file" : " files") +
+        (failed > 0 ? ", " + std::to_string(failed) + " failed" : "") +
+        "</h1>\n<p>Each source beside its pdf in false colours, logarithmic, from violet over green to red. Each "
+        "picture has its own range of colours. Dark grey: no sample falls there.</p>\n</header>\n<main>\n";
     for (const bool wanted : {false, true})
         for (std::size_t i = 0; i < report.jobs.size(); ++i)
             if ((report.jobs[i].status == JobResult::Status::failed) == wanted)

@@ -170,7 +170,7 @@ std::string add_bytes(const std::string& path, std::uint64_t& bytes) {
     if (status.type() == fs::file_type::not_found) return "there is no file " + path;
     if (status.type() == fs::file_type::none) return path + ": " + error.message();
     if (status.type() == fs::file_type::directory) return path + " is a folder, not a file";
-    if (status.type() != fs::file_type::regular) return path + " is no regular file";
+    if (status.type() != fs::file_type::regular) return path + " is not a regular file";
     bytes += fs::file_size(path, error);
     return error ? path + ": " + error.message() : "";
 }
@@ -196,7 +196,7 @@ std::string check_links(const fs::path& folder, const std::string& output) {
             return "the output " + output + " goes through the symbolic link " + at.string();
         if (fs::is_directory(at, error)) continue;
         if (fs::exists(at, error) && at != folder / output)
-            return "the output " + output + " is in " + at.string() + ", which is no folder";
+            return "the output " + output + " is in " + at.string() + ", which is not a folder";
         return "";
     }
     return "the output " + output + " is a folder already";

@@ -46,7 +46,7 @@ Json parse_line(std::string_view text) {
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
 std::string text_of(const Json& value, const char* key) {
-    if (!value.is_string()) fail(std::string("'") + key + "' is to be a text, not " + value.type_name());
+    if (!value.is_string()) fail(std::string("'") + key + "' must be a string, not " + value.type_name());
     std::string text = value.get<std::string>();
     if (text.empty()) fail(std::string("'") + key + "' is empty");
     if (std::any_of(text.begin(), text.end(), is_control))
@@ -61,12 +61,12 @@ std::vector<std::string> options_of_object(const Json& object) {
         if (std::any_of(name.begin(), name.end(), is_control))
             fail("the name of an option has a control character");
         if (name.empty() || name[0] == '-' || name.find_first_of("= \t") != std::string::npos)
-            fail("'" + name + "' is no name of an option; write it without dashes");
+            fail("'" + name + "' is not the name of an option; write it without dashes");
         if (value.is_string()) options.push_back("--" + name + "=" + text_of(value, name.c_str()));
         else if (value.is_number()) options.push_back("--" + name + "=" + value.dump());
         else if (value.is_boolean() && value.get<bool>()) options.push_back("--" + name);
         else if (!value.is_boolean())
-            fail("the value of option '" + name + "' is to be a text, a number or true, not " + value.type_name());
+            fail("the value of option '" + name + "' must be a string, a number or true, not " + value.type_name());
     }
     return options;
 }
@@ -75,7 +75,7 @@ std::vector<std::string> options_of(const Json& value) {
     if (value.is_object()) return options_of_object(value);
     if (!value.is_array())
         fail(std::string(
-                 "'options' is to be an object such as {\"budget\": \"64KiB\"}, or an array of texts, not ") +
+                 "'options' must be an object such as {\"budget\": \"64KiB\"}, or an array of strings, not ") +
              value.type_name());
     std::vector<std::string> options;
     for (const Json& item : value) options.push_back(text_of(item, "options"));
@@ -83,7 +83,7 @@ std::vector<std::string> options_of(const Json& value) {
 }
 
 ManifestJob job_of(const Json& object) {
-    if (!object.is_object()) fail(std::string("is to be an object, not ") + object.type_name());
+    if (!object.is_object()) fail(std::string("must be an object, not ") + object.type_name());
     ManifestJob job;
     for (const auto& [key, value] : object.items()) {
         if (key == "source") job.source = text_of(value, "source");

@@ -109,7 +109,7 @@ void look_at(PlannedJob& planned, const std::string& folder, const PlanOptions& 
         if (!options.force) {
             const std::vector<std::uint8_t> bytes = read_acdf_bytes(path);
             if (!bytes.empty() && !has_magic(bytes))
-                throw Failure("the output " + path + " exists and is no .acdf file; use --force to replace it");
+                throw Failure("the output " + path + " exists and is not an .acdf file; use --force to replace it");
             planned.reason = why_due(bytes, job, conversions.option_text(), planned);
         }
     }

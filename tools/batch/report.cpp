@@ -24,7 +24,7 @@ const char* to_string(Status status) {
 Status parse_status(const std::string& text) {
     for (const Status status : {Status::done, Status::up_to_date, Status::failed})
         if (text == to_string(status)) return status;
-    throw std::invalid_argument("'" + text + "' is no status of a job");
+    throw std::invalid_argument("'" + text + "' is not a status of a job");
 }
 
 Json to_json(const JobResult& job) {
@@ -224,10 +224,10 @@ BatchReport parse_report(const std::string& text) {
         for (const Json& job : json.at("jobs")) report.jobs.push_back(parse_job(job));
         return report;
     } catch (const Json::parse_error& error) {
-        throw std::invalid_argument("is no report of `acdf batch --json`: it is no JSON from byte " +
+        throw std::invalid_argument("is not a report of `acdf batch --json`: it is not JSON from byte " +
                                     std::to_string(error.byte) + " on");
     } catch (const Json::exception&) {
-        throw std::invalid_argument("is no report of `acdf batch --json`: a key is missing, or of another type");
+        throw std::invalid_argument("is not a report of `acdf batch --json`: a key is missing, or of another type");
     }
 }
 

@@ -153,7 +153,7 @@ private:
             if (!plan_[i].due || plan_[i].memory <= limits_.memory) continue;
             results_[i].error = plan_[i].job.source + ": needs about " + to_readable_size(plan_[i].memory) +
                                 " of memory, more than the " + to_readable_size(limits_.memory) +
-                                " there are for jobs; raise --memory (and `ulimit -v`), or make it smaller";
+                                " that jobs may take; raise --memory (and `ulimit -v`), or give a smaller source";
             tell_end(i);
         }
     }

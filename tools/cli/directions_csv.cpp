@@ -84,7 +84,7 @@ std::optional<std::vector<double>> PointParser::parse(const std::string& line) {
         if (column >= fields.size())
             throw Failure("has " + std::to_string(fields.size()) + " columns, fewer than the header needs");
         const auto value = number_in(fields[column]);
-        if (!value) throw Failure("'" + fields[column] + "' is no number");
+        if (!value) throw Failure("'" + fields[column] + "' is not a number");
         point.push_back(*value);
     }
     point_ = true;

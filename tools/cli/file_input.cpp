@@ -91,7 +91,7 @@ LoadedFile load_file(const std::string& path) {
 void check_reads_back(const std::uint8_t* data, std::size_t size) {
     File file;
     if (const Status status = File::from_memory(data, size, file); !status.ok())
-        throw Failure(std::string("what was written does not read back: ") + status.message);
+        throw Failure(std::string("cannot read back what was written: ") + status.message);
 }
 
 void fail_kind(const std::string& path, const File& file, const char* command, const char* wanted) {

@@ -49,7 +49,7 @@ void add_weighing(CLI::App& command, builder::Partner& partner) {
                 if (!parse_heuristic(text, partner))
                     throw CLI::ValidationError("--heuristic", "'" + text + "' is none of balance, power");
             },
-            "How your renderer weighs them: balance, or power (squares)")
+            "How your renderer weights them: balance, or power (squares)")
         ->option_text("NAME [balance]")
         ->group(group);
 }

@@ -36,7 +36,7 @@ inline Normal chosen_normal(const std::string& path, const std::vector<float>& n
 }
 
 inline void refuse_normal(const std::string& path, const std::vector<float>& normal) {
-    if (!normal.empty()) throw Failure(path + ": is no local environment; leave out --normal");
+    if (!normal.empty()) throw Failure(path + ": is not a local environment; leave out --normal");
 }
 
 } // namespace acdf::tools

@@ -262,11 +262,11 @@ void write_output(const std::string& path, const std::vector<std::uint8_t>& byte
 }
 
 void make_folder(const std::string& path) {
-    if (path == "-") fail(path, "is no folder; give one to write to");
+    if (path == "-") fail(path, "is not a folder; give one to write to");
     std::error_code error;
     std::filesystem::create_directories(path, error);
     if (error) fail(path, "cannot make this folder: " + error.message());
-    if (!std::filesystem::is_directory(path, error)) fail(path, "is no folder; give one to write to");
+    if (!std::filesystem::is_directory(path, error)) fail(path, "is not a folder; give one to write to");
 }
 
 OutputFolder::OutputFolder(const std::string& path) {

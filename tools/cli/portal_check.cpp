@@ -116,7 +116,7 @@ void note_portals(const builder::Visibility& visibility, const input::MeshSurfac
         }
         const double share = useless_share(surface, window);
         if (share > kNotable)
-            note(name + " is larger than its window: nothing comes in through " +
+            note(name + " is larger than its opening: no light comes through " +
                  std::to_string(std::lround(100.0 * share)) +
                  " % of it, and samples there are lost; give the corners of the opening alone");
     }

@@ -54,7 +54,7 @@ void SceneOption::note_axes(const CLI::App& command, const builder::Renderer& re
     if (!given() || SceneAxes::of(back).ours()) return;
     for (const char* option : {"--scene-up", "--scene-axes"})
         if (command.get_option(option)->count() > 0) return;
-    note(std::string("the scene is taken as it is in our own frame; if it is in that of ") + renderer.name +
+    note(std::string("the scene's coordinates are taken as acdf's own; if they are those of ") + renderer.name +
          ", add --scene-axes \"" + back + "\"");
 }
 

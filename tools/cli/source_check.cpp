@@ -19,9 +19,9 @@ void note_another(const std::string& path, const File& file, const std::string& 
 void require_support(const std::string& path, const File& file, const std::string& source,
                      const std::string& sha256, std::uint64_t violations) {
     if (violations == 0 || !made_from_another(file, sha256)) return;
-    throw Failure(path + ": does not stand for " + source +
-                  ": it was made from another file, and its density is 0 in " + std::to_string(violations) +
-                  " points where that has light; measure against its own source");
+    throw Failure(path + ": is not a file of " + source +
+                  ": it was made from another source, and its pdf is 0 at " + std::to_string(violations) +
+                  " points where this one has light; measure against its own source");
 }
 
 } // namespace acdf::tools

@@ -15,7 +15,7 @@ inline std::string to_whole_number(std::string& text) {
     std::uint64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (end != text.data() + text.size() || error == std::errc::invalid_argument)
-        return "'" + text + "' is no whole number";
+        return "'" + text + "' is not a whole number";
     if (error != std::errc()) return "'" + text + "' is too large";
     text = std::to_string(value);
     return "";

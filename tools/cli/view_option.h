@@ -31,7 +31,7 @@ inline std::array<float, 3> chosen_view(const std::string& path, const File& fil
 }
 
 inline void refuse_view(const std::string& path, const std::string& view) {
-    if (!view.empty()) throw Failure(path + ": is no BRDF; leave out --view");
+    if (!view.empty()) throw Failure(path + ": is not a BRDF; leave out --view");
 }
 
 } // namespace acdf::tools

@@ -99,7 +99,7 @@ void run(const DemoArguments& options) {
         }
     }
     put("\nThe files are in " + options.folder +
-        ": NAME.png shows the density, NAME.acdf is what a renderer links to.\n");
+        ": NAME.png shows the pdf, NAME.acdf is the file for a renderer.\n");
 }
 
 } // namespace

@@ -103,9 +103,9 @@ std::string per_cent(double share) {
 }
 
 std::string text_of(const Distance& d) {
-    char ratio[64] = "densities are 0 in one where the other samples";
+    char ratio[64] = "the pdf of one is 0 where the other samples";
     if (std::isfinite(d.largest_ratio))
-        std::snprintf(ratio, sizeof ratio, "densities differ by up to a factor of %.4g", d.largest_ratio);
+        std::snprintf(ratio, sizeof ratio, "pdfs differ by up to a factor of %.4g", d.largest_ratio);
     return per_cent(d.worst) + " of the samples fall elsewhere" +
            (d.conditions > 1 ? " in the worst of " + std::to_string(d.conditions) + " conditions, " +
                                    per_cent(d.mean) + " in the mean"

@@ -85,17 +85,18 @@ nlohmann::ordered_json report(const std::string& path, const File& file, const s
 void print_text(const std::string& path, const File& file, const std::string& source, const build::BrdfAccuracy& a,
                 const Baselines& r) {
     std::printf("%s against %s, %u random views\n", printable(path).c_str(), printable(source).c_str(), a.views);
-    std::printf("  relative variance      %.6g   of one sample, mean over views; n samples have this over n\n",
-                a.relative_variance);
-    std::printf("    noise                %s   at 16, 64, 256 samples under even light\n",
+    std::printf(
+        "  relative variance      %.6g   of one sample, mean over views; the mean of n samples has 1/n of it\n",
+        a.relative_variance);
+    std::printf("    noise                %s   at 16, 64, 256 samples under uniform light\n",
                 noise_texts(a.relative_variance).c_str());
     std::printf("    median over views    %.6g\n", a.median);
     std::printf("    worst view           %.6g   at theta_o = %.1f degrees\n", a.worst, degrees(a.worst_view));
-    std::printf("    full table           %.6g   of %s, bins made for all their views\n", r.table_mean,
+    std::printf("    full table           %.6g   of %s, each bin made for all of its views\n", r.table_mean,
                 to_readable_size(r.table_bytes).c_str());
-    std::printf(
-        "      for bins' centres  %.6g   the same as published: biased between them where this is infinite\n",
-        r.table_centre);
+    std::printf("      for bins' centres  %.6g   the same table as published: biased between the centres where "
+                "this is infinite\n",
+                r.table_centre);
     std::printf("    best GGX lobe        %.6g   alpha = %.3g\n", r.ggx, r.ggx_alpha);
     std::printf("    cosine               %.6g\n", r.cosine);
     std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);

@@ -78,15 +78,16 @@ void print_text(const MeasureArguments& options, const File& file, const Measure
     if (a.combined) {
         std::printf("  relative variance      %.6g   a sample, with its MIS partner: not to be used alone\n",
                     a.relative_variance);
-        std::printf("    noise                %s   at 16, 64, 256 samples where nothing hides the light\n",
+        std::printf("    noise                %s   at 16, 64, 256 samples, without occluders\n",
                     noise_texts(a.relative_variance).c_str());
-        std::printf("  largest weight         %.6g   f over the combined density, over its mean\n", a.max_weight);
+        std::printf("  largest weight         %.6g   f over the combined pdf, over its mean\n", a.max_weight);
         std::printf("  support violations     %" PRIu64 "   of both together\n", a.support_violations);
         std::printf("  cells                  %" PRIu64 "\n", a.cells);
         print_bytes(file);
         return;
     }
-    std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
+    std::printf("  relative variance      %.6g   of one sample; the mean of n samples has 1/n of it\n",
+                a.relative_variance);
     std::printf("    noise                %s   at 16, 64, 256 samples; of the light's sum, not of a surface\n",
                 noise_texts(a.relative_variance).c_str());
     std::printf("    full-resolution CDF  %.6g\n", measured.full_cdf);
@@ -155,7 +156,7 @@ void run(const MeasureArguments& options) {
                     measured.accuracy.support_violations);
     if (measured.accuracy.support_violations > 0)
         throw Failure(
-            options.file + ": its density is 0 where " + options.source +
+            options.file + ": its pdf is 0 where " + options.source +
             ", as it is read here, has light; measure with the options that it was made with, which `acdf "
             "info` prints");
 }

@@ -135,7 +135,7 @@ nlohmann::ordered_json visibility_json(const VisibilityAccuracy& p) {
 }
 
 void print_visibility(const VisibilityAccuracy& p) {
-    std::printf("  at %zu positions of the scene, with what it hides\n", p.points);
+    std::printf("  at %zu positions of the scene, with its occluders\n", p.points);
     std::printf("    relative variance    %.6g; %.6g at worst\n", p.relative_variance, p.worst);
     std::printf("    by normals alone     %.6g   %.4g times as much\n", p.normals_alone,
                 times(p.normals_alone, p.relative_variance));
@@ -196,7 +196,7 @@ void print_text(const File& file, const LocalMeasureOptions& options, const Loca
     std::printf("  relative variance      %.6g   %s\n", a.relative_variance,
                 a.combined ? "a sample of the irradiance, with its MIS partner: not to be used alone"
                            : "of one sample of the irradiance, mean over normals");
-    std::printf("    noise                %s   at 16, 64, 256 samples where nothing hides the light\n",
+    std::printf("    noise                %s   at 16, 64, 256 samples, without occluders\n",
                 noise_texts(a.relative_variance).c_str());
     std::printf("    median, worst        %.6g, %.6g\n", a.median, a.worst);
     std::printf("    full-resolution CDF  %.6g   %.4g times as much\n", a.relative_variance_full_cdf,

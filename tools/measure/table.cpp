@@ -66,7 +66,7 @@ void print_text(const std::string& path, const File& file, const std::string& so
     std::printf("%s against %s\n", printable(path).c_str(), printable(source).c_str());
     std::printf("  relative variance      %.6g   %s\n", a.relative_variance,
                 a.combined ? "a sample, with its MIS partner: not to be used alone"
-                           : "of one sample; n samples have this over n");
+                           : "of one sample; the mean of n samples has 1/n of it");
     std::printf("    noise                %s   at 16, 64, 256 samples\n", noise_texts(a.relative_variance).c_str());
     if (file.description().bin_count > 1) {
         std::printf("    median over bins     %.6g\n", a.median);
@@ -75,7 +75,7 @@ void print_text(const std::string& path, const File& file, const std::string& so
     }
     std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);
     if (!a.combined) {
-        std::printf("  RMS error of the pdf   %.6g   where a uniform density is 1\n", a.rms_pdf_error);
+        std::printf("  RMS error of the pdf   %.6g   where a uniform pdf is 1\n", a.rms_pdf_error);
         std::printf("  KL divergence          %.6g   nats\n", a.kl_divergence);
     }
     std::printf("  support violations     %" PRIu64 "\n", a.support_violations);

@@ -49,7 +49,7 @@ measure::Camera camera_of(const input::Triangles& triangles, const CellsOptions&
     out.from = options.from ? turn ? turned(*options.from) : *options.from
                             : out.to + size * measure::normalized({1.0, -1.3, 1.0});
     const Vec3 forward = out.to - out.from, across = cross(forward, out.up);
-    if (!(dot(forward, forward) > 0.0)) throw Failure("the camera looks nowhere: --from is --to");
+    if (!(dot(forward, forward) > 0.0)) throw Failure("the camera has no direction: --from equals --to");
     if (!(dot(across, across) > 1e-12 * dot(forward, forward))) out.up = {1.0, 0.0, 0.0}; // straight down
     return out;
 }

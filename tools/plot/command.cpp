@@ -154,13 +154,13 @@ std::vector<std::uint8_t> make_png(const PlotArguments& options, const Plotted& 
         });
         picture = add_legend(picture, {source.title, range, zero}, font);
     }
-    return encode_png(picture, {"acdf " ACDF_VERSION, "Density of " + joined(source.title) + "; colours span " +
+    return encode_png(picture, {"acdf " ACDF_VERSION, "Pdf of " + joined(source.title) + "; colours span " +
                                                           to_string(range) + " sr^-1, logarithmic"});
 }
 
 std::vector<std::uint8_t> make_exr(const PlotArguments& options, const Plotted& source) {
     return encode_exr(draw(options, source, false).image,
-                      {"acdf " ACDF_VERSION, "Density of " + joined(source.title) + ", sr^-1"});
+                      {"acdf " ACDF_VERSION, "Pdf of " + joined(source.title) + ", sr^-1"});
 }
 
 /// The options that only a picture of cells has, and those that it has not.
@@ -172,7 +172,7 @@ void check_mesh(const CLI::App& command, const PlotArguments& options) {
     if (!options.mesh.empty())
         for (const char* option : {"--position", "--normal", "--view", "--projection", "--range", "--no-knots",
                                    "--no-legend", "--probe-projection"})
-            if (given(option)) throw CLI::ValidationError(option, "is for a density, not for cells over a mesh");
+            if (given(option)) throw CLI::ValidationError(option, "is for a pdf, not for cells over a mesh");
 }
 
 std::vector<std::uint8_t> make_cells(const PlotArguments& options) {
@@ -193,14 +193,14 @@ std::vector<std::uint8_t> make_cells(const PlotArguments& options) {
 void run(const PlotArguments& options) {
     const bool exr = is_exr(options.output);
     if (!options.mesh.empty()) {
-        if (exr) throw CLI::ValidationError("--scene", "makes a .png: cells are no densities");
+        if (exr) throw CLI::ValidationError("--scene", "shows cells, not a pdf: give a .png to write to");
         Output output(options.output, options.force, {options.file, options.mesh});
         const std::vector<std::uint8_t> bytes = make_cells(options);
         output.write(bytes.data(), bytes.size());
         return output.commit();
     }
     if (!options.range.empty() && !parse_range(options.range))
-        throw CLI::ValidationError("--range", "needs two densities such as 1e-3:100, 0 < MIN < MAX");
+        throw CLI::ValidationError("--range", "needs two pdfs such as 1e-3:100, 0 < MIN < MAX");
     Output output(options.output, options.force, {options.file}); // refuses early, before the work
 
     const Plotted source = load_plotted(options);
@@ -309,7 +309,7 @@ void add_plot(CLI::App& program, int& exit_code) {
         "acdf plot room.acdf -o floor.png --position 0.5,1,0 --normal 0,0,1\n"
         "acdf plot room.acdf -o cells.png --scene room.obj --from 4,-6,3 --to 0,0,1\n"
         "acdf plot nickel.acdf -o lobe.png --view 60\n"
-        "acdf plot sky.acdf -o density.exr --width 4096"));
+        "acdf plot sky.acdf -o pdf.exr --width 4096"));
     command.callback([options, &command, &exit_code] {
         if (options->output.empty()) options->output = output_names({options->file}, "", ".png")[0];
         check_mesh(command, *options);

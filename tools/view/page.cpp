@@ -26,7 +26,7 @@ std::string viewer_page() {
     const std::vector<std::uint8_t> bytes = read_bytes(path);
     std::string page(bytes.begin(), bytes.end());
     if (page.find(mark) == std::string::npos)
-        throw Failure(path + ": is no page of this version; install acdf again");
+        throw Failure(path + ": is not a page of this version; install acdf again");
     return page;
 }
 

@@ -38,7 +38,7 @@ public:
         double volume = 1.0;
         for (std::size_t axis = 0; axis < grid_.dimensions(); ++axis) {
             const AcdfRange& range = cell.range[grid_.axes[axis]];
-            if (range.tilt != 0.0) throw std::invalid_argument("tables of tilted density are not measured");
+            if (range.tilt != 0.0) throw std::invalid_argument("tables with tilted cells are not measured");
             Sum length;
             for (std::uint32_t i = range.low; i < range.high; ++i) length.add(measure_[axis][i]);
             volume *= length.value();

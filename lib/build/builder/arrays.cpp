@@ -44,7 +44,7 @@ void for_each(const Array& array, const Visit& visit) {
 
 void check(const Array& array) {
     require(array.data != nullptr, "the array's data is null");
-    require(size_of(array.number) > 0, "the array's number is no Number");
+    require(size_of(array.number) > 0, "the array's number is not a Number");
     require(!array.shape.empty() && array.shape.size() <= max_axes, "an array has 1 to 6 axes");
     std::uint64_t count = 1;
     for (const std::uint32_t length : array.shape) {

@@ -16,7 +16,7 @@ bool is_fit(AcdfFit fit) { return fit >= ACDF_FIT_UNIFORM && fit <= ACDF_FIT_VAR
 void check(const Channels& channels) {
     const AcdfChannels mode = channels.mode;
     require(mode == ACDF_CHANNELS_WEIGHTED || mode == ACDF_CHANNELS_SEPARATE || mode == ACDF_CHANNELS_LARGEST,
-            "channels.mode is no AcdfChannels");
+            "channels.mode is not an AcdfChannels");
     const ChannelWeights& w = channels.weights;
     for (const double weight : {w.r, w.g, w.b})
         require(weight >= 0.0 && weight <= 1e6, "a weight of channels is negative, not finite or above 1e6");
@@ -27,12 +27,12 @@ void check(const Channels& channels) {
 
 void check(AcdfCodec codec) {
     require(codec == ACDF_CODEC_NONE || codec == ACDF_CODEC_ZLIB || codec == ACDF_CODEC_PLANES,
-            "codec is no AcdfCodec");
+            "codec is not an AcdfCodec");
 }
 
 void check(const Goal& goal, std::uint32_t least_cells) {
     using Kind = Goal::Kind;
-    require(goal.kind >= Kind::automatic && goal.kind <= Kind::variance, "goal.kind is no Goal::Kind");
+    require(goal.kind >= Kind::automatic && goal.kind <= Kind::variance, "goal.kind is not a Goal::Kind");
     require(goal.kind != Kind::cells || (goal.cells >= least_cells && goal.cells <= 1u << 28),
             "goal.cells is too small, or above 2^28");
     require(goal.kind != Kind::budget || (goal.budget > 0 && goal.budget <= std::uint64_t{1} << 40),
@@ -65,10 +65,10 @@ void check_segments(std::uint32_t phi, std::uint32_t theta, double epsilon) {
 }
 
 void check(const FitOptions& fit) {
-    require(is_fit(fit.fit), "fit is no AcdfFit");
-    require(fit.order == Order::best || fit.order == Order::phi || fit.order == Order::z, "order is no Order");
+    require(is_fit(fit.fit), "fit is not an AcdfFit");
+    require(fit.order == Order::best || fit.order == Order::phi || fit.order == Order::z, "order is not an Order");
     require(fit.conditional == Conditional::energy || fit.conditional == Conditional::mean,
-            "conditional is no Conditional");
+            "conditional is not a Conditional");
     check_max_weight(fit.max_weight);
     check_segments(fit.phi_segments, fit.theta_segments, fit.epsilon);
     require(fit.gradient_knots <= 1u << 20, "gradient_knots is above 2^20");
@@ -86,7 +86,7 @@ void check(const SceneNormal& n) {
 void check(const Partner& partner, AcdfPartnerKind most) {
     require(partner.kind >= ACDF_PARTNER_NONE && partner.kind <= most, "mis.kind is none of those of the file");
     require(partner.heuristic == ACDF_HEURISTIC_BALANCE || partner.heuristic == ACDF_HEURISTIC_POWER,
-            "mis.heuristic is no AcdfHeuristic");
+            "mis.heuristic is not an AcdfHeuristic");
     for (const double share : {partner.light, partner.other})
         require(share >= 1e-3 && share <= 1e3, "a share of the partner is not in [0.001, 1000]");
 }
@@ -106,7 +106,7 @@ void check_bins(const LocalOptions& options) {
             "max_weight is for bins that share tiles, without visibility cells or an MIS partner");
     require(options.shape == LocalShape::small || options.shape == LocalShape::fast ||
                 options.shape == LocalShape::automatic,
-            "shape is no LocalShape");
+            "shape is not a LocalShape");
     require(options.shape != LocalShape::fast || may_be_fast(options),
             "the fast shape is for bins that share tiles, without max_weight, visibility cells or an MIS partner");
 }
@@ -121,14 +121,14 @@ bool may_be_fast(const LocalOptions& options) {
 void check(const TargetOptions& options) {
     check(options.channels);
     require(options.filter == ACDF_FILTER_NEAREST || options.filter == ACDF_FILTER_BILINEAR,
-            "filter is no AcdfFilter");
-    require(options.wrap == Wrap::clamp || options.wrap == Wrap::repeat, "wrap is no Wrap");
+            "filter is not an AcdfFilter");
+    require(options.wrap == Wrap::clamp || options.wrap == Wrap::repeat, "wrap is not a Wrap");
     const Domain domain = options.domain;
     require(domain == Domain::source || domain == Domain::latlong || domain == Domain::octahedral,
-            "domain is no Domain");
+            "domain is not a Domain");
     const BadTexelPolicy policy = options.bad_texels;
     require(policy == BadTexelPolicy::zero || policy == BadTexelPolicy::clamp || policy == BadTexelPolicy::error,
-            "bad_texels is no BadTexelPolicy");
+            "bad_texels is not a BadTexelPolicy");
 }
 
 void check(const EnvironmentOptions& options) {
@@ -181,13 +181,13 @@ void check(const LocalOptions& options) {
     for (const SceneNormal& n : options.normals) check(n);
     require(is_share(options.cosine_share, 0.99), "cosine_share is not in [0, 0.99]");
     require(options.bin_target == BinTarget::mean || options.bin_target == BinTarget::centre,
-            "bin_target is no BinTarget");
+            "bin_target is not a BinTarget");
     check(options.codec);
     check(options.source);
     check_text(options.normals_text);
     check(options.mis, ACDF_PARTNER_BRDF);
     require(options.mis.kind == ACDF_PARTNER_NONE || (options.sharing && options.cosine_share == 0.0),
-            "an MIS partner is for bins that share tiles, and takes the place of a cosine_share");
+            "an MIS partner is for bins that share tiles, without a cosine_share");
     if (!options.sharing) check(options.fit);
     if (!options.sharing && options.fit.fit != ACDF_FIT_VARIANCE) return;
     check(options.goal, options.sharing ? 16 : 1);
@@ -199,7 +199,7 @@ void check(const BrdfOptions& options) {
     check(options.channels);
     check(options.codec);
     check(options.source);
-    require(is_fit(options.fit), "fit is no AcdfFit");
+    require(is_fit(options.fit), "fit is not an AcdfFit");
     const std::uint32_t theta = options.theta_views, phi = options.phi_views;
     require(theta == 0 || (theta >= 2 && theta <= 1024), "theta_views is neither 0 nor in [2, 1024]");
     require(phi <= 1 || (phi >= 4 && phi <= 1024), "phi_views is neither 0, 1 nor in [4, 1024]");

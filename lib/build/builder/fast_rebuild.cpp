@@ -77,7 +77,7 @@ void open(Frame& frame, const AcdfAllocator& allocator) {
     options.allocator = allocator;
     if (const acdf::Status status = File::from_memory(frame.bytes.data(), frame.bytes.size(), frame.file, options);
         !status.ok())
-        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+        throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
 }
 
 void require_fast(const EnvironmentOptions& options, Projection projection) {
@@ -91,7 +91,7 @@ void require_fast(const EnvironmentOptions& options, Projection projection) {
     require(options.target.domain == Domain::source || options.target.domain == own,
             "quality fast fits maps on their own grid; choose quality best");
     require(options.target.bad_texels != BadTexelPolicy::clamp,
-            "quality fast reads pixels once, which does not do for clamp; choose zero or error, or quality best");
+            "quality fast reads pixels once, and clamp needs them twice; choose zero or error, or quality best");
 }
 
 FastRebuild::FastRebuild(std::uint32_t width, std::uint32_t height, const EnvironmentOptions& options,
@@ -129,9 +129,10 @@ void FastRebuild::make(const Pixels& pixels, Region region, bool alone, Gate& ga
     frame.bad = bad();
     if (refuse_bad_ && frame.bad.count() > 0)
         throw std::invalid_argument("it has " + build::text(frame.bad) +
-                                    "; mend it, or choose to zero or clamp them");
+                                    "; repair them, or choose to zero or clamp them");
     if (sums_.largest() > std::numeric_limits<float>::max())
-        throw std::invalid_argument("radiance whose channels together are more than a float holds; scale it down");
+        throw std::invalid_argument(
+            "the channels of the radiance add up to more than a float holds; scale it down");
     frame.file = File();
     store(fitted(loop, gate, frame), frame);
     open(frame, frame.arena.allocator());

@@ -45,9 +45,9 @@ void check(const Pixels& pixels) {
     check_size(pixels.width, pixels.height);
     require(pixels.channels == 1 || pixels.channels == 3 || pixels.channels == 4,
             "pixels.channels is none of 1, 3 and 4");
-    require(size_of(pixels.number) > 0, "pixels.number is no Number");
+    require(size_of(pixels.number) > 0, "pixels.number is not a Number");
     require(pixels.projection >= Projection::latlong && pixels.projection <= Projection::octahedral,
-            "pixels.projection is no Projection");
+            "pixels.projection is not a Projection");
     const Strides strides = strides_of(pixels);
     const std::uint32_t used = pixels.channels == 1 ? 1 : 3;
     StridedAxis axes[] = {{pixels.height, strides.row}, {pixels.width, strides.pixel}, {used, strides.channel}};

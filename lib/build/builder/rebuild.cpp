@@ -43,7 +43,7 @@ Status EnvironmentRebuilder::make(std::uint32_t width, std::uint32_t height, con
                                   EnvironmentRebuilder& result, Quality quality, Projection projection) noexcept {
     result = {};
     return guarded_alone({}, [&](Gate&) {
-        require(quality == Quality::fast || quality == Quality::best, "quality is no Quality");
+        require(quality == Quality::fast || quality == Quality::best, "quality is not a Quality");
         require(projection == Projection::latlong || projection == Projection::octahedral,
                 "a rebuilder takes lat-long and octahedral maps");
         const float pixel[3] = {};

@@ -67,7 +67,7 @@ Target make(const TargetOptions& options, int threads, const build::Progress& pr
     take(repaired);
     if (options.bad_texels == BadTexelPolicy::error && repaired.bad().count() > 0)
         throw std::invalid_argument("it has " + build::text(repaired.bad()) +
-                                    "; mend it, or choose to zero or clamp them");
+                                    "; repair them, or choose to zero or clamp them");
     repaired.light_if_black();
     return rows.finish(repaired.bad(), projection);
 }

@@ -305,7 +305,7 @@ public:
         const Plan p = plan(options_, budget);
         if (p.cells >= kLeastCells) return one(p);
         const std::uint64_t least = options_.file_size(hollow(p.thetas, p.azimuths, kLeastCells));
-        throw std::runtime_error("no file of " + std::to_string(budget) + " bytes holds it; the smallest takes " +
+        throw std::runtime_error("no file of " + std::to_string(budget) + " bytes can hold it; the smallest has " +
                                  std::to_string(least) + " bytes");
     }
 
@@ -337,7 +337,7 @@ public:
         for (; fit.relative_variance > variance; fit = within(high)) {
             if (high >= (std::uint64_t{4} << 20)) {
                 char text[96];
-                std::snprintf(text, sizeof text, "a relative variance of %.3g is out of reach; 4 MiB come to %.3g",
+                std::snprintf(text, sizeof text, "a relative variance of %.3g is out of reach; 4 MiB have %.3g",
                               variance, fit.relative_variance);
                 throw std::runtime_error(text);
             }

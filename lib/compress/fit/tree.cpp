@@ -307,7 +307,7 @@ private:
         char text[160];
         std::snprintf(
             text, sizeof text,
-            "so low a bound on weights takes about %.6g %s; %.9g are allowed: allow more, or raise the bound",
+            "so low a bound on weights needs about %.6g %s; %.9g are allowed: allow more, or raise the bound",
             least, cells ? "cells" : "bytes", wanted);
         throw std::runtime_error(text);
     }

@@ -50,7 +50,7 @@ void check_rectangle(const PortalRectangle& r, std::size_t number) {
     if (!(std::isfinite(across) && std::isfinite(up) && across >= 1e-12 && up >= 1e-12))
         refuse(number, "has no area");
     if (!(std::fabs(dot(r.across, r.up)) <= kRight * across * up))
-        refuse(number, "is no rectangle: its sides are not at right angles");
+        refuse(number, "is not a rectangle: its sides are not at right angles");
 }
 
 AcdfPortalMap map_of(const PortalRectangle& r) {
@@ -167,7 +167,7 @@ PortalSet make_portals(const Target& target, const std::vector<PortalRectangle>&
         const double one = fill(target, out.maps[m], size, &out.sums[m * corners]) / target.total;
         for (std::size_t i = 0; i < out.portals.size(); ++i)
             if (out.portals[i].map == m && !(one > 0.0 && std::isfinite(one)))
-                refuse(i, "faces no light: turn it by another order of its corners");
+                refuse(i, "no light comes from its outer side: give its corners in the other order to turn it");
         out.maps[m].unit = static_cast<float>(std::clamp(one, 0x1p-120, 0x1p120));
     }
     return out;

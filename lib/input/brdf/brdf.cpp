@@ -58,9 +58,10 @@ std::unique_ptr<Brdf> read_file(const std::string& path) {
     if (bytes.size() == MerlLayout::bytes || extension == ".binary")
         return parse_merl(path, bytes.data(), bytes.size());
     const std::string kind = kind_of_no_brdf(path);
-    throw input_error(path, kind.empty() ? "it is no BRDF file known here; give a MERL .binary, an RGL .bsdf or an "
-                                           ".npy file"
-                                         : kind);
+    throw input_error(path, kind.empty()
+                                ? "it is not a BRDF file of a known kind; give a MERL .binary, an RGL .bsdf or an "
+                                  ".npy file"
+                                : kind);
 }
 
 } // namespace

@@ -73,7 +73,7 @@ private:
         char* end = nullptr;
         const double value = std::strtod(item.c_str(), &end);
         if (item.empty() || *end != '\0' || std::isspace(static_cast<unsigned char>(item[0])))
-            fail("'" + item + "' is no number");
+            fail("'" + item + "' is not a number");
         return value;
     }
     static std::string short_text(double value) {

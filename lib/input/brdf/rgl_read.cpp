@@ -63,7 +63,7 @@ private:
         std::vector<float> out = axis_of(file_, name);
         if (!(out.front() >= least && out.back() <= most))
             throw input_error(file_.name(),
-                              std::string("field '") + name + "' has numbers that are no such angles" + no_file);
+                              std::string("field '") + name + "' has numbers that are not such angles" + no_file);
         return out;
     }
 

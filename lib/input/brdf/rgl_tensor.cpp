@@ -89,7 +89,7 @@ bool TensorFile::has_magic(const std::uint8_t* data, std::size_t size) {
 
 TensorFile::TensorFile(const std::string& name, const std::uint8_t* data, std::size_t size) : name_(name) {
     if (!has_magic(data, size))
-        throw input_error(name, "it is no tensor file; give a .bsdf file of the RGL database");
+        throw input_error(name, "it is not a tensor file; give a .bsdf file of the RGL database");
     Cursor file(name_, data, size);
     file.take(sizeof magic);
     const auto major = file.number<std::uint8_t>(), minor = file.number<std::uint8_t>();

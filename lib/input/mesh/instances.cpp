@@ -49,7 +49,7 @@ std::vector<Instances> read_instances(const std::string& path) {
         if (!is_sound(placement)) throw fail("makes its mesh flat, or larger than 1e15");
         const std::string mesh = (std::filesystem::path(path).parent_path() / name).string();
         if (const std::string kind = lower_extension(mesh); kind != ".obj" && kind != ".ply")
-            throw fail("names no mesh: .obj or .ply");
+            throw fail("does not name a mesh: .obj or .ply");
         auto same = std::find_if(out.begin(), out.end(), [&](const Instances& i) { return i.mesh == mesh; });
         if (same == out.end()) same = out.insert(out.end(), Instances{mesh, {}});
         same->placements.push_back(placement);

@@ -77,7 +77,7 @@ private:
         PlyHeader out;
         char line[1024];
         if (size_ == 0 || !file_.getline(line, sizeof line) || std::string(line).substr(0, 3) != "ply")
-            fail("it does not begin with \"ply\": no PLY mesh, or damaged");
+            fail("it does not begin with \"ply\": it is not a PLY mesh, or damaged");
         while (file_.getline(line, sizeof line)) {
             std::istringstream words(line);
             std::string word, name;
@@ -109,7 +109,7 @@ private:
         }
         out.item = type_of(word);
         if (out.item.bytes == 0 || (list && !out.count.integer))
-            fail("its header has a property of a type that PLY has not; it is damaged");
+            fail("its header has a property of a type that PLY does not have; it is damaged");
         return out;
     }
 

@@ -56,13 +56,14 @@ void add_triangles(const aiMesh& mesh, const Placement& placement, UpAxis up, Tr
 } // namespace
 
 Triangles read_triangles(const std::string& path, UpAxis up) {
-    if (!is_mesh(path)) throw input_error(path, "is no mesh (.obj, .ply) and no list of instances (.instances)");
+    if (!is_mesh(path))
+        throw input_error(path, "is neither a mesh (.obj, .ply) nor a list of instances (.instances)");
     Triangles out;
     for_each_mesh(path, [&](const aiMesh& mesh, const Placement& placement) {
         add_triangles(mesh, placement, up, out);
         if (out.count() > most_triangles) throw input_error(path, "it has more than 2^26 triangles");
     });
-    if (out.corners.empty()) throw input_error(path, "no triangle is in it whose corners are numbers below 1e30");
+    if (out.corners.empty()) throw input_error(path, "it has no triangle whose corners are numbers below 1e30");
     return out;
 }
 

@@ -19,7 +19,7 @@ void add_listed_normals(const std::string& path, NormalHistogram& histogram) {
         const int count = read_numbers(at, line.end, values, 4);
         const bool all = is_blank(at, line.end);
         if (count == 0 && all) return;
-        if (!all || (count != 3 && count != 4)) throw fail("is no normal \"x y z [weight]\"");
+        if (!all || (count != 3 && count != 4)) throw fail("is not a normal \"x y z [weight]\"");
         if (values[3] == 0.0) return histogram.skip();
         if (!(values[3] >= kLeastWeight && values[3] <= kGreatestWeight))
             throw fail("has a weight that is negative or out of range; give one from 1e-30 to 1e30");

@@ -25,9 +25,10 @@ build::Layout cube_layout(const std::string& path, const Image& image) {
     for (const build::Layout layout :
          {build::Layout::vertical_cross, build::Layout::horizontal_cross, build::Layout::stacked_cube})
         if (build::has_shape({layout, image.width, image.height})) return layout;
-    refuse(path, image,
-           "is no cube cross (3:4 or 4:3) and no column of faces (1:6); give the six faces with --faces, or set "
-           "another --projection");
+    refuse(
+        path, image,
+        "is neither a cube cross (3:4 or 4:3) nor a column of faces (1:6); give the six faces with --faces, or set "
+        "another --projection");
 }
 
 Detected as_cross(const Image& image, build::Layout layout, const std::string& reason) {

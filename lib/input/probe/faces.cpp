@@ -87,7 +87,7 @@ void check_sizes(const std::vector<std::string>& paths, const std::vector<Image>
         const Image& image = images[i];
         const std::string& path = paths[std::min(i, paths.size() - 1)];
         if (image.width != image.height)
-            throw input_error(path, shape(image) + " is no face of a cube, which is square");
+            throw input_error(path, shape(image) + " is not square, as the faces of a cube are");
         if (image.width != images[0].width)
             throw input_error(path, shape(image) + " is not as large as the first of the six faces, " +
                                         shape(images[0]) + "; scale it");
@@ -143,7 +143,7 @@ std::vector<Image> cut_strip(const std::string& path, const Image& strip) {
         return faces;
     }
     throw input_error(path, shape(strip) +
-                                " is no strip of six squares (1:6, 6:1, 2:3 or 3:2); give six files with "
+                                " is not a strip of six squares (1:6, 6:1, 2:3 or 3:2); give six files with "
                                 "--faces, or a cube cross without");
 }
 

@@ -108,10 +108,10 @@ private:
         refuse_stand_in(path_);
         refuse_converted_line_ends(path_);
         if (has_gain_map(path_))
-            fail(
-                "it is an Ultra HDR JPEG: its pixels end at the white of a display, and what is brighter is in its "
-                "gain map, which acdf does not read; convert it to .exr or .hdr with a program that applies the "
-                "map");
+            fail("it is an Ultra HDR JPEG: its pixels are clipped at the white of a display, and brighter light is "
+                 "in its gain map, which acdf does not read; convert it to .exr or .hdr with a program that "
+                 "applies the "
+                 "map");
         return path_;
     }
 

@@ -33,8 +33,8 @@ void LatlongCheck::take(int first, int count, const float* rgb) {
 
 std::string LatlongCheck::objection() const {
     if (height_ >= kLeastRowsOfDiscs && is_pair_of_discs(rows_))
-        return std::string("is two discs with nothing around them, as a camera with two fisheye lenses takes, and "
-                           "no lat-long map; stitch them to one") +
+        return std::string("shows two discs with black around them, as from a camera with two fisheye lenses, and "
+                           "is not a lat-long map; stitch them into one") +
                kInsist;
     if (height_ >= kLeastRowsOfSides && sides_do_not_meet(rows_))
         return std::string(

@@ -32,7 +32,7 @@ private:
 
 void refuse_bad_texels(const std::string& path, const build::BadTexels& bad) {
     if (bad.count() > 0)
-        throw input_error(path, "it has " + build::text(bad) + "; mend it, or take --bad-pixels zero or clamp");
+        throw input_error(path, "it has " + build::text(bad) + "; repair it, or use --bad-pixels zero or clamp");
 }
 
 /// The reading of one probe.

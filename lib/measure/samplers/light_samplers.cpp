@@ -256,7 +256,7 @@ LightSamplerPtr file_sampler(const File& file) {
 }
 
 LightSamplerPtr normals_alone_sampler(const File& file) {
-    if (file.kind() != ACDF_KIND_LOCAL) throw std::invalid_argument("is no local environment");
+    if (file.kind() != ACDF_KIND_LOCAL) throw std::invalid_argument("is not a local environment");
     return std::make_unique<MovedToPoints<LocalFile, LocalPoint>>(file, false);
 }
 

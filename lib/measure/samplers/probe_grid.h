@@ -18,7 +18,7 @@ public:
         : grid_{target.columns, target.rows, static_cast<std::uint32_t>(target.parameterization)},
           flux_(compress::integral(target)) {
         if (!target.peaks.empty() || target.values.empty())
-            throw std::invalid_argument("a sampler of texels needs a probe as texels have it");
+            throw std::invalid_argument("a sampler of texels needs a probe on its own grid");
         if (!(flux_ > 0.0)) throw std::invalid_argument("a black probe has nothing to sample");
     }
 

@@ -69,7 +69,7 @@ public:
         else if (file.kind() == ACDF_KIND_ENVIRONMENT) local_.environment = file.environment().data();
         else throw std::invalid_argument("the light of a product is an environment or a local environment");
         if (local_.cosine_share > 0.0 || file.partner())
-            throw std::invalid_argument("a file for an MIS partner has no support alone");
+            throw std::invalid_argument("the pdf of a file for an MIS partner is 0 where the partner suffices");
         if (local_.fast.grid) throw std::invalid_argument("a file of the fast shape has no inverse");
     }
     bool has_cosine() const { return is_local_; }
@@ -195,7 +195,7 @@ std::unique_ptr<LightSampler> warp_of(const File& light, const AnyLobe& lobe, st
 } // namespace
 
 std::unique_ptr<LightSampler> product_warp_sampler(const File& light, const File& brdf) {
-    if (brdf.kind() != ACDF_KIND_BRDF) throw std::invalid_argument("numbers are bent towards a BRDF, or ggx");
+    if (brdf.kind() != ACDF_KIND_BRDF) throw std::invalid_argument("numbers are warped towards a BRDF, or ggx");
     return warp_of(light, BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), memory_of(brdf));
 }
 

@@ -52,7 +52,7 @@ bool check_sums(const Payload& payload, const AcdfTiles& tiles, Report& report) 
 
 // What is wrong with the grid of a tile that begins at byte `at`, which moves behind it; null if nothing.
 const char* grid_fault(const Payload& payload, const TileBox& box, u64& at) {
-    if (payload.size - at < 2) return "begins behind the end";
+    if (payload.size - at < 2) return "begins after the end";
     u32 count[2];
     for (u32 axis = 0; axis < 2; ++axis) {
         const u32 shift = payload.data[at + axis];
@@ -61,13 +61,13 @@ const char* grid_fault(const Payload& payload, const TileBox& box, u64& at) {
         if (count[axis] > ACDF_FAST_CELLS) return "has too many cells";
     }
     at += 2;
-    if (payload.size - at < count[1] + u64{count[0]} * count[1]) return "ends behind the end";
+    if (payload.size - at < count[1] + u64{count[0]} * count[1]) return "ends after the end";
     const u8* list = payload.data + at;
     bool right = are_ends(list, count[1], 255);
     list += count[1];
     for (u32 line = 0; right && line < count[1]; ++line, list += count[0]) right = are_ends(list, count[0], 255);
     at += count[1] + u64{count[0]} * count[1];
-    return right ? nullptr : "has sums that are none";
+    return right ? nullptr : "has sums that decrease or are out of range";
 }
 
 bool check_grid(const Payload& payload, const TileBoxes& boxes, const Parts& parts, Report& report) {
@@ -87,8 +87,7 @@ bool check_grid(const Payload& payload, const TileBoxes& boxes, const Parts& par
     bool padded = payload.size - at == ACDF_FAST_CELLS;
     for (u64 i = at; padded && i < payload.size; ++i) padded = payload.data[i] == 0;
     if (!padded)
-        report.add(6029, payload.at(0), "%llu bytes stand behind the last grid",
-                   static_cast<ull>(payload.size - at));
+        report.add(6029, payload.at(0), "%llu bytes follow the last grid", static_cast<ull>(payload.size - at));
     return padded;
 }
 

@@ -30,7 +30,8 @@ ShaderTables& ShaderTables::operator=(ShaderTables&& other) noexcept {
 
 Status ShaderTables::make(const File& file, ShaderTables& out) noexcept {
     out = ShaderTables();
-    if (file.kind() == ACDF_KIND_TABLE) return none("it is no environment, no local environment and no BRDF");
+    if (file.kind() == ACDF_KIND_TABLE)
+        return none("it is neither an environment nor a local environment nor a BRDF");
     if (!acdf::make_walk(file, out.block_))
         return none("its cells tilt (--fit pdf), too many share their curves, or memory is too little");
     return {};

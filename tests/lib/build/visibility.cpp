@@ -219,7 +219,7 @@ TEST(VisibilityFiles, AreNotMadeLargerThanTheirBudget) {
     const builder::Status status = builder::local(target(), with_visibility(4 << 10), result);
     EXPECT_EQ(status.code, builder::ErrorCode::out_of_reach);
     const std::string text = status.message,
-                      start = "a size of 4096 bytes is out of reach; the least that can be had is about ";
+                      start = "a size of 4096 bytes is out of reach; the smallest possible is about ";
     ASSERT_EQ(text.rfind(start, 0), 0u) << text;
     const std::uint64_t least = std::stoull(text.substr(start.size())), enough = least + least / 4;
     const Built built(with_visibility(enough));

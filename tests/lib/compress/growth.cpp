@@ -168,7 +168,7 @@ TEST(PartitionGrowth, AVarianceIsSearchedForWithinABoundOfBytes) {
         bytes(least, kMost);
         ADD_FAILURE() << "a file beyond the bound";
     } catch (const std::runtime_error& error) {
-        EXPECT_NE(std::string(error.what()).find("takes a budget"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("give a budget"), std::string::npos) << error.what();
     }
     EXPECT_EQ(bytes(coarse, kMost), bytes(coarse, none));
     const std::size_t near = bytes(0.22, kMost).size(); // found between the steps of the growth

@@ -51,13 +51,13 @@ TEST(BatchManifest, TellsAllThatALineSays) {
 TEST(BatchManifest, TellsWhatIsWrongWithALine) {
     const std::pair<const char*, const char*> cases[] = {
         {"{\"source\": \"a\", \"sauce\": 1}", "unknown key 'sauce'"},
-        {"{\"source\": 7}", "'source' is to be a text, not number"},
+        {"{\"source\": 7}", "'source' must be a string, not number"},
         {"{\"source\": \"a\", \"kind\": \"table\"}", "kind 'table'"},
-        {"{\"source\": \"a\", \"kind\": null}", "'kind' is to be a text, not null"},
-        {"{\"source\": \"a\", \"options\": \"--fit cdf\"}", "'options' is to be an object"},
-        {"{\"source\": \"a\", \"options\": {\"cells\": [1]}}", "'cells' is to be a text, a number or true"},
+        {"{\"source\": \"a\", \"kind\": null}", "'kind' must be a string, not null"},
+        {"{\"source\": \"a\", \"options\": \"--fit cdf\"}", "'options' must be an object"},
+        {"{\"source\": \"a\", \"options\": {\"cells\": [1]}}", "'cells' must be a string, a number or true"},
         {"{\"source\": \"a\", \"options\": {\"--cells\": 1}}", "without dashes"},
-        {"{\"source\": \"a\", \"options\": [1]}", "'options' is to be a text"},
+        {"{\"source\": \"a\", \"options\": [1]}", "'options' must be a string"},
         {"{\"source\": \"a\", \"options\": {\"cells\": 1e999}}", "out of range"},
         {"{\"source\": \"a\", \"source\": \"b\"}", "'source' twice"},
         {"{\"source\": \"a\", \"options\": {\"x\": 1, \"x\": 2}}", "'x' twice"},

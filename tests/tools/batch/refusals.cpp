@@ -11,7 +11,7 @@ TEST_F(BatchCommand, RefusesManifestsBeforeAnythingStarts) {
     write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
     const std::string good = "{\"source\": \"probes/a.pfm\"}\n", at2 = manifest + ":2: ";
     expect_refused(good + "{\"source\": \"probes/a.pfm\", \"colour\": 1}\n", at2 + "has an unknown key 'colour'");
-    expect_refused(good + "{\"source\": []}\n", at2 + "'source' is to be a text");
+    expect_refused(good + "{\"source\": []}\n", at2 + "'source' must be a string");
     expect_refused(good + good, at2 + "is the same job as " + manifest + ":1; leave");
     expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"./a.acdf\"}\n", at2 + "is the same job");
     expect_refused(good + "{\"source\": \"probes/a.pfm\", \"options\": {\"cells\": 5}}\n",
@@ -64,7 +64,7 @@ TEST_F(BatchCommand, DoesNotReplaceFilesThatAreNotItsOwn) {
     write_text(out + "/probe001.acdf", "my notes");
     const Result result = batch({probes});
     EXPECT_EQ(result.code, 1);
-    EXPECT_NE(result.err.find("is no .acdf file"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("is not an .acdf file"), std::string::npos) << result.err;
     EXPECT_EQ(files_in(out).size(), 1u);
     EXPECT_EQ(batch({probes, "--force"}).code, 0);
     EXPECT_EQ(files_in(out).size(), 2u);

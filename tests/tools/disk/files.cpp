@@ -155,7 +155,7 @@ TEST_F(Disk, linkToAnotherDevice) {
     EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
     EXPECT_TRUE(litter(shared).empty());
     std::filesystem::remove_all(shared);
-    if (here.st_dev == there.st_dev) GTEST_SKIP() << "/dev/shm is no other device";
+    if (here.st_dev == there.st_dev) GTEST_SKIP() << "/dev/shm is the same device";
 }
 
 TEST_F(Disk, oneOfTwoWritersWinsWhole) {

@@ -199,7 +199,7 @@ TEST_F(PlotCommand, RefusesHostileInputs) {
         expect_refused({bad, "-o", png}, 1, "bad.acdf");
     }
     const std::string text = folder / "text.hdr";
-    write_text(text, "#?RADIANCE\nthis is no picture\n");
+    write_text(text, "#?RADIANCE\nthis is not a picture\n");
     expect_refused({text, "-o", png}, 1, "text.hdr");
     write_text(text, "");
     expect_refused({text, "-o", png}, 1, "text.hdr");

@@ -84,11 +84,11 @@ TEST(MeshPortals, ThoseThatDoNotFitTheirWindowsAreRemarkedOn) {
     };
     EXPECT_EQ(remarks(kOpening).find("portal 1"), std::string::npos);
     const std::string larger = remarks("-2,-2,2 2,-2,2 2,2,2"); // half of it is roof
-    EXPECT_NE(larger.find("portal 1 is larger than its window: nothing comes in through 50 % of it"),
+    EXPECT_NE(larger.find("portal 1 is larger than its opening: no light comes through 50 % of it"),
               std::string::npos)
         << larger;
     const std::string past = remarks("-4,0,2 4,0,2 4,2,2"); // half of it is beside the room
-    EXPECT_NE(past.find("portal 1 is larger than its window"), std::string::npos) << past;
+    EXPECT_NE(past.find("portal 1 is larger than its opening"), std::string::npos) << past;
     const std::string far = remarks("-2,0,9 2,0,9 2,2,9");
     EXPECT_NE(far.find("portal 1 lies outside of the box around the scene"), std::string::npos) << far;
 

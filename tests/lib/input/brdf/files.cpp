@@ -122,7 +122,7 @@ TEST(InputBrdfFiles, AreToldByWhatTheyHold) {
     write_text(folder / "text.npy", "Dear sir");
     EXPECT_REFUSED(open_brdf(folder / "text.npy"), "text.npy");
     write_text(folder / "text.txt", "Dear sir");
-    EXPECT_REFUSED(open_brdf(folder / "text.txt"), "no BRDF file known here");
+    EXPECT_REFUSED(open_brdf(folder / "text.txt"), "not a BRDF file of a known kind");
     write_text(folder / "a", "\xab\x41\x43\x44\x46" + std::string(100, ' '));
     EXPECT_REFUSED(open_brdf(folder / "a"), "it is an .acdf file; give the BRDF");
     write_text(folder / "a", "\x76\x2f\x31\x01" + std::string(100, ' '));

@@ -151,10 +151,10 @@ TEST(Instances, WhatIsNoList) {
     EXPECT_EQ(refusal_of(folder, whole), "");
     EXPECT_CONTAINS(refusal_of(folder, ""), "empty");
     EXPECT_CONTAINS(refusal_of(folder, "# nothing\n"), "lists no mesh");
-    EXPECT_CONTAINS(refusal_of(folder, whole + "1 0 0 0 0 1 0 0 0 0 1 t.obj\n"), "line 2 is no instance");
-    EXPECT_CONTAINS(refusal_of(folder, "1 0 0 0 0 1 0 0 0 0 1 0\n"), "line 1 is no instance");
-    EXPECT_CONTAINS(refusal_of(folder, "t.obj\n"), "line 1 is no instance");
-    EXPECT_CONTAINS(refusal_of(folder, "1 0 0 0 0 1 0 0 0 0 1 0 other.instances\n"), "names no mesh");
+    EXPECT_CONTAINS(refusal_of(folder, whole + "1 0 0 0 0 1 0 0 0 0 1 t.obj\n"), "line 2 is not an instance");
+    EXPECT_CONTAINS(refusal_of(folder, "1 0 0 0 0 1 0 0 0 0 1 0\n"), "line 1 is not an instance");
+    EXPECT_CONTAINS(refusal_of(folder, "t.obj\n"), "line 1 is not an instance");
+    EXPECT_CONTAINS(refusal_of(folder, "1 0 0 0 0 1 0 0 0 0 1 0 other.instances\n"), "does not name a mesh");
     EXPECT_CONTAINS(refusal_of(folder, "1 0 0 0 0 1 0 0 0 0 1 0 none.obj\n"), "none.obj");
     EXPECT_CONTAINS(refusal_of(folder, "1 0 0 0 1 0 0 0 0 0 1 0 t.obj\n"), "flat");
     EXPECT_CONTAINS(refusal_of(folder, "nan 0 0 0 0 1 0 0 0 0 1 0 t.obj\n"), "line 1");

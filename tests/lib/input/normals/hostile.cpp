@@ -49,7 +49,7 @@ TEST(SceneHostile, NoSceneAtAll) {
     for (const char* name : {"a.obj", "a.ply", "a.exr", "a.txt"})
         EXPECT_CONTAINS(refusal_of(folder, name, ""), "empty");
     for (const char* name : {"a.obj", "a.ply", "a.exr", "a.txt", "a.fbx", "a"})
-        EXPECT_NE(refusal_of(folder, name, "Dear sir,\nthis is no scene.\n"), "") << name;
+        EXPECT_NE(refusal_of(folder, name, "Dear sir,\nthis is not a scene.\n"), "") << name;
     EXPECT_CONTAINS(refusal_of(folder, "a.fbx", "Dear sir"), "neither a mesh");
 }
 
@@ -126,7 +126,7 @@ TEST(SceneHostile, PlyListsAreNoLongerThanTheFile) {
     EXPECT_CONTAINS(told(little, "int", zeros + "\xB0"), "a list in it claims");
     EXPECT_CONTAINS(told(little, "char", "\xFF"), "a list in it claims");
     EXPECT_CONTAINS(told(big, "uint", "\x70" + zeros), "a list in it claims");
-    EXPECT_CONTAINS(told(little, "float", zeros + "\x40"), "of a type that PLY has not");
+    EXPECT_CONTAINS(told(little, "float", zeros + "\x40"), "of a type that PLY does not have");
 }
 
 struct Sample {

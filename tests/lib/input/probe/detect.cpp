@@ -295,7 +295,7 @@ TEST(InputDetect, ShapesThatCannotBeWhatTheUserSaysAreRefused) {
         EXPECT_CONTAINS(text, "not square");
         EXPECT_CONTAINS(text, to_string(projection));
     }
-    EXPECT_CONTAINS(refused(folder, uniform_noise(64, 64), Projection::cube_cross), "no cube cross");
+    EXPECT_CONTAINS(refused(folder, uniform_noise(64, 64), Projection::cube_cross), "neither a cube cross");
     EXPECT_CONTAINS(refused(folder, uniform_noise(64, 32), Projection::cube_cross), "3:4");
 }
 

@@ -171,12 +171,12 @@ TEST(InputFaces, WhatIsNoCubeIsRefused) {
     EXPECT_EQ(text.rfind(third, 0), 0u) << text;
     EXPECT_CONTAINS(text, "16x16 is not as large");
     write_rgb(third, {32, 16, std::vector<float>(3 * 32 * 16, 1.0f)});
-    EXPECT_CONTAINS(refused_with(source, "directx"), "no face of a cube");
+    EXPECT_CONTAINS(refused_with(source, "directx"), "not square, as the faces of a cube are");
     std::filesystem::remove(third);
     text = refused_with(source, "directx");
     EXPECT_EQ(text.rfind(third, 0), 0u) << text;
     write_rgb(folder / "map.exr", latlong_sky(32));
-    EXPECT_CONTAINS(refused_with(folder / "map.exr", "directx"), "32x16 is no strip");
+    EXPECT_CONTAINS(refused_with(folder / "map.exr", "directx"), "32x16 is not a strip");
 }
 
 TEST(InputFaces, SixFilesAreOneSource) {
