@@ -29,9 +29,9 @@ struct PdfArguments {
     std::string view;
 };
 
-/// The line of a direction (and what stands behind it); `density` is a function of a unit vector of floats.
-template <class Density>
-std::string density_line(std::vector<double> v, const PdfArguments& options, const Density& density) {
+/// The line of a direction (and what stands behind it); `pdf` is a function of a unit vector of floats.
+template <class Pdf>
+std::string pdf_line(std::vector<double> v, const PdfArguments& options, const Pdf& pdf) {
     if (options.normalize) {
         const double length = std::hypot(v[0], v[1], v[2]);
         for (std::size_t i = 0; i < 3 && length > 0.0 && std::isfinite(length); ++i) v[i] /= length;
@@ -43,7 +43,7 @@ std::string density_line(std::vector<double> v, const PdfArguments& options, con
         std::snprintf(text, sizeof(text), "%.9g,", static_cast<double>(static_cast<float>(x)));
         if (options.csv) line += text;
     }
-    std::snprintf(text, sizeof(text), "%.9g\n", static_cast<double>(density(direction)));
+    std::snprintf(text, sizeof(text), "%.9g\n", static_cast<double>(pdf(direction)));
     return line + text;
 }
 
@@ -82,7 +82,7 @@ void evaluate_environment(const File& file, std::istream& in, const PdfArguments
     const EnvironmentView view = file.environment();
     if (options.csv) output.write("x,y,z,pdf\n");
     evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
-        return density_line(direction, options, [&](const float d[3]) { return view.pdf(d); });
+        return pdf_line(direction, options, [&](const float d[3]) { return view.pdf(d); });
     });
 }
 
@@ -93,7 +93,7 @@ void evaluate_local(const File& file, std::istream& in, const PdfArguments& opti
         const AcdfLocalPoint point = view.at(chosen_normal(options.file, options.normal).data());
         if (options.csv) output.write("x,y,z,pdf\n");
         return evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
-            return density_line(direction, options, [&](const float d[3]) { return view.pdf(point, d); });
+            return pdf_line(direction, options, [&](const float d[3]) { return view.pdf(point, d); });
         });
     }
     if (options.csv) output.write("x,y,z,nx,ny,nz,pdf\n");
@@ -101,7 +101,7 @@ void evaluate_local(const File& file, std::istream& in, const PdfArguments& opti
              [&](const std::vector<double>& both) {
                  const float n[3] = {static_cast<float>(both[3]), static_cast<float>(both[4]),
                                      static_cast<float>(both[5])};
-                 return density_line(both, options, [&](const float d[3]) { return view.pdf(n, d); });
+                 return pdf_line(both, options, [&](const float d[3]) { return view.pdf(n, d); });
              });
 }
 
@@ -111,7 +111,7 @@ void evaluate_brdf(const File& file, std::istream& in, const PdfArguments& optio
     const std::array<float, 3> wo = chosen_view(options.file, file, options.view);
     if (options.csv) output.write("x,y,z,pdf\n");
     evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
-        return density_line(direction, options, [&](const float d[3]) { return view.pdf(wo.data(), d); });
+        return pdf_line(direction, options, [&](const float d[3]) { return view.pdf(wo.data(), d); });
     });
 }
 

@@ -1,8 +1,8 @@
-// The page: what was dropped, drawn. `loadReader` and WASM (base64) stand before this text in the built page.
+// The page: shows the file that was dropped on it. `loadReader` and WASM (base64) stand before this text in the built page.
 
 const $ = id => document.getElementById(id);
 const MAP_WIDTH = 1024, MAP_HEIGHT = 512;
-const state = {file: null, name: "", densities: null, range: [0, 1], seed: 1};
+const state = {file: null, name: "", pdfs: null, range: [0, 1], seed: 1};
 
 // A false-colour scale that grows lighter evenly: five colours of viridis and what lies between them.
 const COLOURS = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
@@ -22,9 +22,9 @@ function options() {
 
 // ---- the map --------------------------------------------------------------------------------------------------
 
-function showDensity() {
-    const densities = state.densities = state.file.map(MAP_WIDTH, MAP_HEIGHT, options());
-    const positive = densities.filter(pdf => pdf > 0).sort();
+function showPdf() {
+    const pdfs = state.pdfs = state.file.map(MAP_WIDTH, MAP_HEIGHT, options());
+    const positive = pdfs.filter(pdf => pdf > 0).sort();
     const highest = positive.at(-1) ?? 1, high = positive[Math.floor(positive.length * 0.998)] ?? 1;
     const most = highest > 10 * high ? high : highest; // a sun would leave nothing to be seen of the rest
     const least = Math.max(positive[0] ?? 1, most * 1e-5);
@@ -33,7 +33,7 @@ function showDensity() {
     canvas.width = MAP_WIDTH;
     canvas.height = MAP_HEIGHT;
     const image = context.createImageData(MAP_WIDTH, MAP_HEIGHT);
-    densities.forEach((pdf, i) => {
+    pdfs.forEach((pdf, i) => {
         image.data.set(pdf > 0 ? colour((Math.log(pdf) - low) / width) : [0, 0, 0], 4 * i);
         image.data[4 * i + 3] = 255;
     });
@@ -47,8 +47,8 @@ function showDensity() {
     }
 }
 
-// Where the map shows a direction, from 0 to 1.
-function place(x, y, z) {
+// The position of a direction in the map, from 0 to 1.
+function position(x, y, z) {
     return [0.5 - Math.atan2(y, x) / (2 * Math.PI), Math.atan2(Math.hypot(x, y), z) / Math.PI];
 }
 
@@ -79,14 +79,14 @@ function outline(context, cell, [columns, rows], square, width, height) {
     for (let i = 0; i < 4 * steps + 1; ++i) {
         const from = corners[Math.floor(i / steps)], to = corners[Math.min(Math.floor(i / steps) + 1, 4)];
         const t = i % steps / steps;
-        const at = place(...octahedral((from[0] + (to[0] - from[0]) * t) / columns, (from[1] + (to[1] - from[1]) * t) / rows));
+        const at = position(...octahedral((from[0] + (to[0] - from[0]) * t) / columns, (from[1] + (to[1] - from[1]) * t) / rows));
         if (before === null || Math.abs(before[0] - at[0]) > 0.5) context.moveTo(at[0] * width, at[1] * height);
         else context.lineTo(at[0] * width, at[1] * height);
         before = at;
     }
 }
 
-function drawCells(context, width, height) {
+function paintCells(context, width, height) {
     const cells = state.file.cells(), {axes, parameterization} = state.file.info;
     context.strokeStyle = "#fff7";
     context.lineWidth = Math.max(0.5, devicePixelRatio * 0.5);
@@ -97,7 +97,7 @@ function drawCells(context, width, height) {
     context.stroke();
 }
 
-// Random numbers that come again: the same file and seed draw the same samples. One in each of count boxes.
+// Random numbers that come again: the same file and seed give the same samples. One in each of count boxes.
 function numbers(count) {
     let word = state.seed >>> 0;
     const random = () => {
@@ -113,15 +113,15 @@ function numbers(count) {
     return u;
 }
 
-function drawSamples(context, width, height) {
-    const count = Number($("count").value), drawn = state.file.sample(numbers(count), options());
+function paintSamples(context, width, height) {
+    const count = Number($("count").value), samples = state.file.sample(numbers(count), options());
     const radius = Math.max(1, (count > 2000 ? 0.8 : 1.4) * devicePixelRatio);
     context.fillStyle = "#fff";
     context.strokeStyle = "#000";
     context.lineWidth = devicePixelRatio * 0.5;
     for (let i = 0; i < count; ++i) {
-        if (!(drawn[4 * i + 3] > 0)) continue;
-        const [left, top] = place(drawn[4 * i], drawn[4 * i + 1], drawn[4 * i + 2]);
+        if (!(samples[4 * i + 3] > 0)) continue;
+        const [left, top] = position(samples[4 * i], samples[4 * i + 1], samples[4 * i + 2]);
         context.beginPath();
         context.arc(left * width, top * height, radius, 0, 2 * Math.PI);
         context.fill();
@@ -134,13 +134,13 @@ function showOverlay() {
     overlay.width = Math.round(box.width * devicePixelRatio);
     overlay.height = Math.round(box.height * devicePixelRatio);
     const context = overlay.getContext("2d");
-    if ($("cells").checked) drawCells(context, overlay.width, overlay.height);
-    drawSamples(context, overlay.width, overlay.height);
+    if ($("cells").checked) paintCells(context, overlay.width, overlay.height);
+    paintSamples(context, overlay.width, overlay.height);
 }
 
 // ---- figures --------------------------------------------------------------------------------------------------
 
-function timeOfADraw() {
+function timeOfASample() {
     const count = 20000, u = numbers(count), begin = performance.now();
     state.file.sample(u, options());
     return (performance.now() - begin) * 1e6 / count;
@@ -160,7 +160,7 @@ function figures() {
     for (const [key, value] of Object.entries(metadata))
         if (key.startsWith("accuracy."))
             add(key.slice(9).replaceAll("_", " ").replace(/^./, c => c.toUpperCase()), isFinite(value) ? digits(value) : value);
-    if (info.kind !== "table") add("A draw takes here", `${Math.round(timeOfADraw())} ns`);
+    if (info.kind !== "table") add("Time of a sample here", `${Math.round(timeOfASample())} ns`);
     $("figures").replaceChildren(...rows.map(([name, value]) => {
         const row = document.createElement("tr"), head = document.createElement("th"), cell = document.createElement("td");
         head.scope = "row";
@@ -186,7 +186,7 @@ function showAt() {
 function refresh() {
     showAt();
     if (!state.file || state.file.kind === "table") return;
-    showDensity();
+    showPdf();
     showOverlay();
 }
 
@@ -211,24 +211,24 @@ async function show(dropped) {
     $("phi").value = 0;
     $("controls").querySelector(".cells").hidden = kind !== "environment";
     document.querySelector("#view section").hidden = kind === "table";
-    $("readout").textContent = "Point at the map for the density there.";
+    $("readout").textContent = "Point at the map to see the pdf there.";
     refresh();
     figures();
     document.body.dataset.shown = dropped.name;
 }
 
-function tellDensity(event) {
+function showReadout(event) {
     const box = $("stage").getBoundingClientRect();
     const left = (event.clientX - box.left) / box.width, top = (event.clientY - box.top) / box.height;
     if (!state.file || left < 0 || left >= 1 || top < 0 || top >= 1) return;
     const d = direction(left, top), [pdf] = state.file.pdf(d, options());
     $("readout").textContent = `φ ${(180 - 360 * left).toFixed(1)}°, θ ${(180 * top).toFixed(1)}°: (${
-        d.map(x => x.toFixed(3)).join(", ")}), density ${digits(pdf, 6)} sr⁻¹`;
+        d.map(x => x.toFixed(3)).join(", ")}), pdf ${digits(pdf, 6)} sr⁻¹`;
 }
 
 const ready = loadReader(Uint8Array.from(atob(WASM), c => c.charCodeAt(0)));
 ready.catch(error => fail(`This browser does not run the reader: ${error.message}`));
-// What `acdf view` put into the page (base64).
+// The file that `acdf view` put into the page (base64).
 const opened = $("opened");
 if (opened)
     show(new File([Uint8Array.from(atob(opened.textContent.trim()), c => c.charCodeAt(0))], opened.dataset.name));
@@ -245,7 +245,7 @@ $("again").addEventListener("click", () => {
     ++state.seed;
     showOverlay();
 });
-for (const name of ["pointermove", "pointerdown"]) $("stage").addEventListener(name, tellDensity);
+for (const name of ["pointermove", "pointerdown"]) $("stage").addEventListener(name, showReadout);
 addEventListener("resize", () => state.file && state.file.kind !== "table" && showOverlay());
 $("controls").addEventListener("submit", event => event.preventDefault());
 showAt();

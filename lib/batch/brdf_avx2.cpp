@@ -8,11 +8,11 @@ void acdf::sample_avx2(const BatchTable& table, const float (*wo)[3], const doub
 }
 void acdf::pdf_avx2(const BatchTable& table, const float (*wo)[3], const float (*wi)[3], std::size_t count,
                     float* out) {
-    for_blocks<Densities>(table, wo, wi, count, out);
+    for_blocks<ViewPdfs>(table, wo, wi, count, out);
 }
 void acdf::view_pdf_avx2(const BatchTable& table, const AcdfBrdfView& view, const float (*wi)[3], std::size_t count,
                          float* out) {
-    view_densities(table, view, wi, count, out);
+    view_pdfs(table, view, wi, count, out);
 }
 void acdf::view_sample_avx2(const BatchTable& table, const AcdfBrdf& brdf, const AcdfBrdfView& view,
                             const double (*u)[2], std::size_t count, AcdfDirectionSample* out) {

@@ -2,7 +2,7 @@
 // BrdfBatch traverses its arrays. Internal linkage: see brdf_kernel.h.
 #pragma once
 
-#include "batch/brdf_density_kernel.h"
+#include "batch/brdf_pdf_kernel.h"
 
 namespace {
 

@@ -81,8 +81,8 @@ ACDF_LANE Vector heights_of(const AcdfLocal& local, const FastBoxes& box, Vector
 }
 
 /* acdf_local_fast_cell_pdf of a vector of cells of such heights; ends: as ends_at returns them on each axis. */
-ACDF_LANE Vector fast_density(const AcdfLocal& local, const FastCells& c, const Ints ends[2], const FastBoxes& box,
-                              Vector height, std::size_t at) {
+ACDF_LANE Vector fast_cell_pdf(const AcdfLocal& local, const FastCells& c, const Ints ends[2], const FastBoxes& box,
+                               Vector height, std::size_t at) {
     Ints before[2], end[2];
     for (int axis = 0; axis < 2; ++axis)
         split_ends(ends[axis], loaded(&c.index[axis][at]), &before[axis], &end[axis]);

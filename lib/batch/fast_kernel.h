@@ -215,7 +215,7 @@ ACDF_LANE Vector begin_directions(const AcdfLocal& local, const FastDraws& d, st
         row_direction(columns, low[0], to_doubles(box.high[0]), z[0], z[1], u, half, out);
     }
     const Ints ends[2] = {loaded(&d.ends[0][at]), loaded(&d.ends[1][at])};
-    return fast_density(local, c, ends, box, height, at);
+    return fast_cell_pdf(local, c, ends, box, height, at);
 }
 
 /* The samples of lanes whose tiles are sampled, but for those of a mask and others that are left to single calls.

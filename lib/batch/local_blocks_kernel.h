@@ -69,8 +69,8 @@ ACDF_LANE void draws_in_blocks(const AcdfLocal& local, const AcdfLocalPoint& poi
 
 /* The same of pdfs. */
 template <std::size_t Size, class P, class Block>
-ACDF_LANE void densities_in_blocks(const AcdfLocal& local, const float (*normals)[3], const float (*directions)[3],
-                                   std::size_t count, float* out, const Block& block) {
+ACDF_LANE void pdfs_in_blocks(const AcdfLocal& local, const float (*normals)[3], const float (*directions)[3],
+                              std::size_t count, float* out, const Block& block) {
     in_blocks<Size>(
         [&](std::size_t first) {
             return PointsOf<P>{local, normals + first};
@@ -79,9 +79,8 @@ ACDF_LANE void densities_in_blocks(const AcdfLocal& local, const float (*normals
         count, out, block);
 }
 template <std::size_t Size, class P, class Block>
-ACDF_LANE void densities_in_blocks(const AcdfLocal& local, const AcdfLocalPoint& point,
-                                   const float (*directions)[3], std::size_t count, float* out,
-                                   const Block& block) {
+ACDF_LANE void pdfs_in_blocks(const AcdfLocal& local, const AcdfLocalPoint& point, const float (*directions)[3],
+                              std::size_t count, float* out, const Block& block) {
     const OnePoint<P> points(local, point);
     in_blocks<Size>([&](std::size_t) -> const OnePoint<P>& { return points; },
                     [&](std::size_t i) { out[i] = acdf::alone::local_pdf(local, point, directions[i]); },

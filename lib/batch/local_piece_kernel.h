@@ -3,7 +3,7 @@
 // looked at.
 #pragma once
 
-#include "batch/local_density_kernel.h"
+#include "batch/local_pdf_kernel.h"
 #include "batch/search_vectors.h"
 
 #include <algorithm>
@@ -116,11 +116,11 @@ template <class Of>
 ACDF_LANE void pdf_all(const AcdfLocal& local, Of of, const float (*directions)[3], std::size_t count, float* out) {
     if (local.tables->pieces) {
         const Search s = search_of(local.tables, local.tables->directions);
-        densities_in_blocks<kSearched, Points<false>>(local, of, directions, count, out,
-                                                      [&](const auto&... rest) { piece_block(local, s, rest...); });
+        pdfs_in_blocks<kSearched, Points<false>>(local, of, directions, count, out,
+                                                 [&](const auto&... rest) { piece_block(local, s, rest...); });
     } else {
-        densities_in_blocks<kBlock, Points<false>>(local, of, directions, count, out,
-                                                   [&](const auto&... rest) { density_block(local, rest...); });
+        pdfs_in_blocks<kBlock, Points<false>>(local, of, directions, count, out,
+                                              [&](const auto&... rest) { pdf_block(local, rest...); });
     }
 }
 

@@ -61,11 +61,11 @@ void fill(const Grid& grid, const TableCell& cell, std::size_t axis, std::size_t
 }
 
 /// A bin: f, the file's pdf p and its partner's b in each box of the grid, with the bin as unit of volume.
-struct Densities {
+struct BinPdfs {
     std::vector<double> f, p, b;
     std::uint64_t cells = 0;
 
-    Densities(const File& file, std::uint32_t bin, const Grid& grid, const Grid& other)
+    BinPdfs(const File& file, std::uint32_t bin, const Grid& grid, const Grid& other)
         : f(pdf_of(grid)), p(f.size(), 0.0), b(pdf_of(other)) {
         if (b.empty()) b.assign(f.size(), 0.0);
         if (f.empty() || !(file.bin(bin).share > 0.0f)) return;
@@ -90,7 +90,7 @@ struct Densities {
 };
 
 BinAccuracy measure_bin(const File& file, std::uint32_t bin, const Grid& grid, const Grid& other) {
-    const Densities at(file, bin, grid, other);
+    const BinPdfs at(file, bin, grid, other);
     BinAccuracy out;
     out.lit = !at.f.empty();
     if (!out.lit) return out;
@@ -154,7 +154,7 @@ std::vector<float> recommended_light_shares(const File& file, const std::vector<
                                             const std::vector<Grid>& others) {
     std::vector<float> out(bins.size(), 1.0f);
     compress::parallel_for(std::size_t{0}, bins.size(), [&](std::size_t k) {
-        const Densities at(file, static_cast<std::uint32_t>(k), bins[k], others[k]);
+        const BinPdfs at(file, static_cast<std::uint32_t>(k), bins[k], others[k]);
         if (at.f.empty()) return;
         std::size_t low = 0, high = recommendable_shares - 1; // the moment is convex
         while (low < high) {

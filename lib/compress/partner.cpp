@@ -29,7 +29,7 @@ double ggx_pdf(double alpha, const std::array<double, 3>& wo, const std::array<d
 
 /// The mean pdf of lobes for light of one cosine: half of them that of a matte surface, the others glossy ones,
 /// seen from all sides.
-double brdf_density(double cosine) {
+double brdf_pdf(double cosine) {
     constexpr double widths[] = {0.5, 0.25, 0.1};
     constexpr std::size_t views = 4, azimuths = 64;
     constexpr double weight = 0.5 / double(std::size(widths) * views * azimuths);
@@ -129,8 +129,7 @@ double Filling::share(double alone, double left) const {
 
 Lobes::Lobes(AcdfPartnerKind kind) : even_(kind == ACDF_PARTNER_MEAN || kind == ACDF_PARTNER_TABLE) {
     if (even_ || kind == ACDF_PARTNER_COSINE) return;
-    for (std::size_t i = 0; i < kCosines; ++i)
-        density_.push_back(brdf_density((double(i) + 0.5) / double(kCosines)));
+    for (std::size_t i = 0; i < kCosines; ++i) density_.push_back(brdf_pdf((double(i) + 0.5) / double(kCosines)));
 }
 
 double Lobes::density(double cosine) const {

@@ -117,7 +117,7 @@ TEST_P(FastMath, PdfOfASampleIsItsOwn) {
     }
 }
 
-TEST_P(FastMath, DensitiesAreTheSameButForRounding) {
+TEST_P(FastMath, PdfsAreTheSameButForRounding) {
     std::mt19937_64 random(3);
     for (int i = 0; i < 20000; ++i) {
         const Vector n = about(random), d = random_direction(random);

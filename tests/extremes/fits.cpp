@@ -25,12 +25,12 @@ protected:
     const Target& target() const { return GetParam().target; }
 };
 
-TEST_P(Extreme, EveryFitIsADensityThatCoversIt) {
+TEST_P(Extreme, EveryFitIsAPdfThatCoversIt) {
     for (const NamedFit& fit : all_fits(9, 7, 60)) check_fit(target(), fit);
 }
 
 // f/p is what a renderer adds up.
-TEST_P(Extreme, WeightsAreFiniteAndEveryNumberDrawsSomething) {
+TEST_P(Extreme, WeightsAreFiniteAndEveryNumberSamplesSomething) {
     const double numbers[] = {0.0, 1.0, 1.0 - 0x1p-24, 0x1p-149, 0x1p-24, 0.5, 0.25, 1.0 / 3, -1.0, 2.0, NAN};
     for (const NamedFit& fit : all_fits(9, 7, 60)) {
         SCOPED_TRACE(fit.name);

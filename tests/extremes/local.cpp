@@ -103,7 +103,7 @@ TEST(ExtremeLocal, TexelsOfCoarseMapsAreCovered) {
 }
 
 // Nothing can be sampled where nothing shines: pdf 0, and a sample that says so, whatever the numbers.
-TEST(ExtremeLocal, DarkHemispheresDrawNothing) {
+TEST(ExtremeLocal, DarkHemispheresSampleNothing) {
     const Target nadir =
         texel_target(kColumns, kRows, [](std::uint32_t, std::uint32_t r) { return r == kRows - 1; });
     for (const bool sharing : {true, false}) {

@@ -34,7 +34,7 @@ const std::string& small_file() {
     return path;
 }
 
-TEST(BrdfCommand, fileIsValidAndTellsWhatItIs) {
+TEST(BrdfCommand, fileIsValidAndDescribesItself) {
     EXPECT_EQ(run_acdf({"validate", small_file()}).code, 0);
     const Json info = Json::parse(run_acdf({"info", "--json", small_file()}).out);
     EXPECT_EQ(info.at("kind"), "brdf");
@@ -143,18 +143,18 @@ TEST(BrdfCommand, plotsAView) {
     EXPECT_EQ(run_acdf({"plot", folder / "sky.acdf", "-o", folder / "b.png", "--view", "10"}).code, 2);
 }
 
-TEST(BrdfCommand, samplesAndDensitiesAreThoseOfTheReader) {
+TEST(BrdfCommand, samplesAndPdfsAreThoseOfTheReader) {
     acdf::File file;
     ASSERT_TRUE(acdf::File::open(small_file().c_str(), file).ok());
     const Result sampled = run_acdf({"sample", small_file(), "-n", "40", "--view", "50,20", "--sequence", "sobol"});
     ASSERT_EQ(sampled.code, 0) << sampled.err;
-    const Result densities = run_acdf({"pdf", small_file(), "--view", "50,20"}, sampled.out);
-    ASSERT_EQ(densities.code, 0) << densities.err;
+    const Result evaluated = run_acdf({"pdf", small_file(), "--view", "50,20"}, sampled.out);
+    ASSERT_EQ(evaluated.code, 0) << evaluated.err;
     const double degree = std::acos(-1.0) / 180.0;
     const float wo[3] = {static_cast<float>(std::sin(50 * degree) * std::cos(20 * degree)),
                          static_cast<float>(std::sin(50 * degree) * std::sin(20 * degree)),
                          static_cast<float>(std::cos(50 * degree))};
-    std::istringstream samples(sampled.out), pdfs(densities.out);
+    std::istringstream samples(sampled.out), pdfs(evaluated.out);
     std::string line;
     std::getline(samples, line);
     EXPECT_EQ(line, "u0,u1,x,y,z,pdf");
@@ -225,7 +225,7 @@ TEST(BrdfCommand, sameInputGivesTheSameBytes) {
     EXPECT_EQ(read_text(folder / "a.acdf"), read_text(folder / "b.acdf"));
 }
 
-TEST(BrdfCommand, mistakesAreToldInOneLine) {
+TEST(BrdfCommand, mistakesAreReportedInOneLine) {
     const Folder folder;
     const std::string out = folder / "out.acdf";
     write_text(folder / "bad.binary", "not a BRDF");

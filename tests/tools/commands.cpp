@@ -255,7 +255,7 @@ TEST_F(Commands, InfoOfHalvings) {
     EXPECT_NE(people.out.find("are tables made when it is opened"), std::string::npos) << people.out;
 }
 
-TEST_F(Commands, InfoOfSeveralFilesIsAnArrayAndABadOneIsTold) {
+TEST_F(Commands, InfoOfSeveralFilesIsAnArrayAndABadOneIsReported) {
     const Result good = run_acdf({"info", sky, sky, "--json"});
     EXPECT_EQ(good.code, 0);
     EXPECT_EQ(json::parse(good.out).size(), 2u);
@@ -306,7 +306,7 @@ TEST_F(Commands, ValidateAcceptsAndRefuses) {
     EXPECT_TRUE(rules.count(2004) && rules.count(2008)) << report.out;
 }
 
-TEST_F(Commands, ValidateTellsFaultsFromUnreadableFiles) {
+TEST_F(Commands, ValidateDistinguishesFaultsFromUnreadableFiles) {
     write_text(folder / "empty", "");
     EXPECT_EQ(run_acdf({"validate", sky, folder / "empty"}).code, 3);
     EXPECT_EQ(run_acdf({"validate", folder / "empty", folder / "missing"}).code, 1);
@@ -355,24 +355,24 @@ TEST_F(Commands, SampleIsTheSameOnEveryMachine) {
 
 // ---- pdf -----------------------------------------------------------------------------------------------
 
-TEST_F(Commands, PdfOfSamplesIsTheirDensity) {
+TEST_F(Commands, PdfOfSamplesIsTheirPdf) {
     const Result samples = run_acdf({"sample", sky, "-n", "200", "--seed", "7"});
-    const Result densities = run_acdf({"pdf", sky}, samples.out);
-    ASSERT_EQ(densities.code, 0) << densities.err;
-    const auto rows = numbers_in(samples.out, true), pdfs = numbers_in(densities.out, false);
+    const Result evaluated = run_acdf({"pdf", sky}, samples.out);
+    ASSERT_EQ(evaluated.code, 0) << evaluated.err;
+    const auto rows = numbers_in(samples.out, true), pdfs = numbers_in(evaluated.out, false);
     ASSERT_EQ(pdfs.size(), rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_NEAR(pdfs[i][0], rows[i][5], 1e-6 * rows[i][5]) << i;
 
     write_text(folder / "samples.csv", samples.out);
-    EXPECT_EQ(run_acdf({"pdf", sky, folder / "samples.csv"}).out, densities.out);
+    EXPECT_EQ(run_acdf({"pdf", sky, folder / "samples.csv"}).out, evaluated.out);
 }
 
 TEST_F(Commands, PdfOfHalvings) {
     write_bytes(sky, small_halvings());
     const Result samples = run_acdf({"sample", sky, "-n", "200", "--seed", "7"});
-    const Result densities = run_acdf({"pdf", sky}, samples.out);
-    ASSERT_EQ(densities.code, 0) << densities.err;
-    const auto rows = numbers_in(samples.out, true), pdfs = numbers_in(densities.out, false);
+    const Result evaluated = run_acdf({"pdf", sky}, samples.out);
+    ASSERT_EQ(evaluated.code, 0) << evaluated.err;
+    const auto rows = numbers_in(samples.out, true), pdfs = numbers_in(evaluated.out, false);
     ASSERT_EQ(pdfs.size(), 200u);
     for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(pdfs[i][0], rows[i][5]) << i;
     // Codes 170 and 100 of 8 bits stand for 0.75153 and 0.33329.

@@ -74,7 +74,7 @@ TEST_F(CubeCommand, SixFilesAreOneMap) {
     EXPECT_EQ(json::parse(of_strip.out)["relative_variance"], report["relative_variance"]);
 }
 
-TEST_F(CubeCommand, IsMeasuredWithoutBeingToldAgain) {
+TEST_F(CubeCommand, IsMeasuredWithoutItsOptions) {
     const Result made = env(faces, {"--faces", "opengl"});
     ASSERT_EQ(made.code, 0) << made.err;
     const Result result = run_acdf({"measure", output, "--against", joined(), "--json"});
@@ -82,7 +82,7 @@ TEST_F(CubeCommand, IsMeasuredWithoutBeingToldAgain) {
     EXPECT_EQ(json::parse(result.out)["relative_variance"], json::parse(made.out)["relative_variance"]);
 }
 
-TEST_F(CubeCommand, TellsWhatIsMissing) {
+TEST_F(CubeCommand, ReportsWhatIsMissing) {
     const Result unordered = env(faces, {});
     EXPECT_EQ(unordered.code, 2); // six maps, as it seems
     EXPECT_NE(unordered.err.find("--faces"), std::string::npos) << unordered.err;

@@ -37,7 +37,7 @@ protected:
     }
 };
 
-TEST_F(Diff, TellsTheSameBytes) {
+TEST_F(Diff, FindsTheSameBytes) {
     const std::string a = made("a.acdf", {"env", folder / "sky.pfm", "--cells", "50"});
     const json same = report(a, a);
     EXPECT_EQ(same["same_bytes"], true);
@@ -46,7 +46,7 @@ TEST_F(Diff, TellsTheSameBytes) {
     EXPECT_EQ(run_acdf({"diff", a, a, "-q"}).out, "");
 }
 
-TEST_F(Diff, CompressionChangesBytesAndNothingThatIsDrawn) {
+TEST_F(Diff, CompressionChangesBytesAndNoSample) {
     const std::string a = made("a.acdf", {"env", folder / "sky.pfm", "--cells", "400"}),
                       b = made("b.acdf", {"env", folder / "sky.pfm", "--cells", "400", "--compress", "zlib"});
     EXPECT_EQ(report(a, b)["same"], false);

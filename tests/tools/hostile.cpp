@@ -41,7 +41,7 @@ protected:
     }
 };
 
-TEST(Printable, LeavesTextAndTellsTheRest) {
+TEST(Printable, LeavesTextAndEscapesTheRest) {
     using acdf::tools::printable;
     EXPECT_EQ(printable("a b\tc\n"), "a b\tc\n");
     EXPECT_EQ(printable("na\xc3\xafve \xe2\x82\xac \xf0\x9f\x98\x80"),
@@ -56,7 +56,7 @@ TEST(Printable, LeavesTextAndTellsTheRest) {
     EXPECT_EQ(acdf::tools::on_one_line("a\nb\n\n"), "a b");
 }
 
-TEST(Printable, TellsWhatTurnsTextOrEndsLines) {
+TEST(Printable, EscapesWhatTurnsTextOrEndsLines) {
     using acdf::tools::printable;
     EXPECT_EQ(printable("a\u202Efdca.exe"), "a\\xe2\\x80\\xaefdca.exe");
     for (const char* one : {"\u0085", "\u061C", "\u200E", "\u200F", "\u2028", "\u2029", "\u202A", "\u202B",
@@ -71,7 +71,7 @@ TEST(Printable, TellsWhatTurnsTextOrEndsLines) {
     EXPECT_EQ(acdf::tools::printable_json(hebrew), hebrew);
 }
 
-TEST(TimeLeft, IsToldOnceItIsKnown) {
+TEST(TimeLeft, IsShownOnceItIsKnown) {
     using acdf::tools::time_left;
     EXPECT_EQ(time_left(0.0, 3.0), "");
     EXPECT_EQ(time_left(0.01, 3.0), "");
@@ -148,7 +148,7 @@ TEST_F(Hostile, InputsWithoutAnEnd) {
     expect_failure({"info", "-"}, 1, "not an .acdf file", std::string(1 << 20, '\0'));
 }
 
-TEST_F(Hostile, RadianceBeyondFloatsIsToldWithItsFile) {
+TEST_F(Hostile, RadianceBeyondFloatsIsReportedWithItsFile) {
     const std::string bright = folder / "bright.pfm";
     std::ofstream(bright, std::ios::binary) << "PF\n2 1\n-1.0\n" << std::string(24, '\x7F'); // 3.4e38 each
     expect_failure({"env", bright, "--channel", "rgb", "-o", file}, 1, "bright.pfm: radiance");
@@ -187,7 +187,7 @@ TEST_F(Hostile, CommandsThatFailLeaveNoFolder) {
     EXPECT_EQ(folder.entries(), 3u); // the folder was there before
 }
 
-TEST_F(Hostile, DamagedPicturesAreToldInOneLine) { // and not by libpng, too
+TEST_F(Hostile, DamagedPicturesAreReportedInOneLine) { // and not by libpng, too
     ASSERT_EQ(run_acdf({"env", probe, "-o", file, "-q"}).code, 0);
     const std::string picture = folder / "probe.png", damaged = folder / "damaged.png", out = folder / "out.acdf";
     ASSERT_EQ(run_acdf({"plot", file, "-o", picture, "-q", "--no-legend", "--width", "64"}).code, 0);
@@ -207,7 +207,7 @@ TEST_F(Hostile, DamagedPicturesAreToldInOneLine) { // and not by libpng, too
     EXPECT_EQ(made.err, "");
 }
 
-TEST_F(Hostile, NamesOfChoicesAreTold) {
+TEST_F(Hostile, NamesOfChoicesAreListed) {
     expect_failure({"env", probe, "--fit", "spline", "-o", file}, 2,
                    "'spline' is none of cdf, pdf, uniform, variance");
     expect_failure({"env", probe, "--fit", "2", "-o", file}, 2, "'2' is none of");
@@ -224,7 +224,7 @@ TEST_F(Hostile, OptionsOfOtherFitsAreRefused) {
     EXPECT_EQ(run_acdf({"env", probe, "--fit", "cdf", "--order", "z", "-o", file, "-q"}).code, 0);
 }
 
-TEST_F(Hostile, ListsAreToldHowTheyAreWritten) {
+TEST_F(Hostile, RefusedListsSayHowTheyAreWritten) {
     for (const char* normal : {"0 0 1", "0,1", "1"})
         expect_failure({"plot", file, "-o", folder / "n.png", "--normal", normal}, 2,
                        "--normal: needs 3 numbers with commas between them; see");
@@ -339,7 +339,7 @@ TEST_F(Hostile, MapsBeyondTheFormatAreRefusedBeforeTheyAreRead) {
     expect_failure({"env", wide, "--projection", "latlong", "-o", file}, 1, "more than 65536 on a side");
 }
 
-TEST_F(Hostile, ReportsThatAreNoneAreToldWithoutExceptions) {
+TEST_F(Hostile, OtherJsonThanReportsIsRefusedWithoutExceptions) {
     const std::string report = folder / "report.json";
     for (const auto& [text, what] :
          std::vector<std::pair<std::string, std::string>>{{"{\"batch\"", "not JSON from byte"},

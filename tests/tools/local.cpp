@@ -57,7 +57,7 @@ protected:
     }
 };
 
-TEST_F(LocalCommand, OfAPartnerTellsIt) {
+TEST_F(LocalCommand, OfAPartnerReportsIt) {
     const json report = made({"--budget", "48KiB", "--mis", "cosine", "--shares", "2:1"});
     EXPECT_TRUE(report.at("combined").get<bool>());
     EXPECT_LT(report.at("relative_variance").get<double>(), report.at("relative_variance_full_cdf").get<double>());
@@ -86,7 +86,7 @@ TEST_F(LocalCommand, OfAPartnerTellsIt) {
     }
 }
 
-TEST_F(LocalCommand, TellsWhatMeasureTells) {
+TEST_F(LocalCommand, ReportsTheFiguresOfMeasure) {
     const json report = made({"--budget", "40kB", "--filter", "nearest"});
     EXPECT_LE(report["bytes"], 40000);
     EXPECT_EQ(report["bytes"], std::filesystem::file_size(output));
@@ -233,7 +233,7 @@ TEST_F(LocalCommand, ChoosesTheShape) {
     EXPECT_EQ(made({"--shape", "auto", "--budget", "24KiB", "--max-weight", "50"}).at("shape"), "small");
 }
 
-TEST_F(LocalCommand, TheLeastSizeThatIsToldCanBeHad) {
+TEST_F(LocalCommand, TheSmallestSizeThatIsReportedIsPossible) {
     ACDF_NOT_SANITIZED();
     const std::string told = "the smallest possible is about ";
     for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
@@ -249,7 +249,7 @@ TEST_F(LocalCommand, TheLeastSizeThatIsToldCanBeHad) {
     }
 }
 
-TEST_F(LocalCommand, GoalsOutOfReachAreToldAndLeaveNothing) {
+TEST_F(LocalCommand, GoalsOutOfReachAreReportedAndLeaveNothing) {
     for (const std::vector<std::string>& goal : std::vector<std::vector<std::string>>{
              {"--budget", "1kB"}, {"--target-variance", "1e-7", "--normals", "2"}}) {
         std::vector<std::string> words{"local", probe, "-o", output, "-q"};

@@ -65,7 +65,7 @@ TEST_F(LocalCommands, ListsEndWithTheirWord) {
     expect_refused({"table", "--names", "a,b", shared, "-o", folder / "out.acdf"}, 1, shared); // is no array
 }
 
-TEST_F(LocalCommands, InfoTellsWhatBinsShare) {
+TEST_F(LocalCommands, InfoReportsWhatBinsShare) {
     const json report = json::parse(run_acdf({"info", "--json", shared}).out);
     EXPECT_EQ(report["kind"], "local");
     EXPECT_EQ(report["bins"], 18);
@@ -123,7 +123,7 @@ TEST_F(LocalCommands, SamplesAreThoseOfTheReader) {
     }
 }
 
-TEST_F(LocalCommands, PdfOfSamplesIsTheirDensity) {
+TEST_F(LocalCommands, PdfOfSamplesIsTheirPdf) {
     const Result samples = run_acdf({"sample", shared, "-n", "40", "--normal", "0.1,0.2,0.3"});
     const Result csv = run_acdf({"pdf", shared, "--normal", "0.1,0.2,0.3", "--csv"}, samples.out);
     ASSERT_EQ(csv.code, 0) << csv.err;
@@ -212,7 +212,7 @@ TEST_F(LocalCommands, PlotShowsSeveralNormals) {
     }
 }
 
-TEST_F(LocalCommands, PlotDrawsTheHorizon) {
+TEST_F(LocalCommands, PlotShowsTheHorizon) {
     const std::string png = folder / "up.png";
     const Result result =
         run_acdf({"plot", shared, "-o", png, "--width", "64", "--no-legend", "--no-knots", "--normal", "0,0,3"});

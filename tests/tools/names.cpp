@@ -106,7 +106,7 @@ TEST_F(Names, HelpExplainsACommand) {
     expect_refused({"help", "enf"}, 2, "there is no command 'enf'; did you mean env?");
 }
 
-TEST_F(Names, WhatWasLikelyMeantIsTold) {
+TEST_F(Names, SuggestsWhatWasLikelyMeant) {
     expect_refused({"vaildate", "x"}, 2, "there is no command 'vaildate'; did you mean validate?");
     expect_refused({"Local", "x"}, 2, "did you mean local?");
     expect_refused({"env", "x.exr", "--buget", "64KiB"}, 2, "did you mean --budget?");

@@ -140,7 +140,7 @@ TEST_F(OctahedralCommand, LocalBaselinesOfOtherMapsNeedNoProjection) {
 }
 
 // Files and baselines are compared on the map's own texels.
-TEST_F(OctahedralCommand, SweepsDrawItsTexels) {
+TEST_F(OctahedralCommand, SweepsSampleItsTexels) {
     for (const char* kind : {"env", "local"}) {
         if (acdf_test::kSanitized && kind == std::string("local")) break; // test_sweep sweeps such files
         SCOPED_TRACE(kind);

@@ -70,7 +70,7 @@ TEST_F(ScanlineCommand, FactorsAreThoseOfTheirPoints) {
         }
 }
 
-TEST_F(ScanlineCommand, CsvAndTableTellTheSame) {
+TEST_F(ScanlineCommand, CsvAndTableHaveTheSameFigures) {
     const Json json = report({probe, "--row", "9"});
     std::istringstream csv(run_acdf({"scanline", probe, "--row", "9", "--csv"}).out);
     std::string line;

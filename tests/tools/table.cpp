@@ -87,11 +87,11 @@ TEST(TableCommand, SampleAndPdfAgree) {
     const Result samples = run_acdf({"sample", file, "-n", "200", "--at", "2"});
     ASSERT_EQ(samples.code, 0) << samples.err;
     EXPECT_EQ(samples.out.substr(0, samples.out.find('\n')), "u0,u1,x0,x1,pdf");
-    const Result densities = run_acdf({"pdf", file, "--at", "2"}, samples.out);
-    ASSERT_EQ(densities.code, 0) << densities.err;
+    const Result evaluated = run_acdf({"pdf", file, "--at", "2"}, samples.out);
+    ASSERT_EQ(evaluated.code, 0) << evaluated.err;
     const auto rows = csv(samples.out);
     ASSERT_EQ(rows.size(), 200u);
-    std::istringstream in(densities.out);
+    std::istringstream in(evaluated.out);
     for (const auto& row : rows) {
         double pdf = 0.0;
         in >> pdf;
@@ -201,7 +201,7 @@ TEST(TableCommand, MistakesAreOneLineWithTheRightCode) {
     EXPECT_NE(zeroed.err.find("1 negative numbers set to 0, the first at [1]"), std::string::npos) << zeroed.err;
 }
 
-TEST(TableCommand, CompressedFilesDrawTheSame) {
+TEST(TableCommand, CompressedFilesSampleTheSame) {
     const Folder folder;
     const std::string source = write_table(folder);
     ASSERT_EQ(run_acdf({"table", source, "-o", folder / "n.acdf", "--cells", "80"}).code, 0);

@@ -21,7 +21,7 @@ cd "$work"
 "$acdf" env sky.pfm --budget 8KiB --domain octahedral -o square.acdf --quiet
 "$acdf" local sky.pfm --budget 64KiB -o local.acdf --quiet
 printf 'not a file of ours, but long enough to be one if bytes were all that it takes' >broken.acdf
-echo '0.6 0 0.8' | "$acdf" pdf sky.acdf >density
+echo '0.6 0 0.8' | "$acdf" pdf sky.acdf >pdf
 "$acdf" info sky.acdf --json >info.json
 # The page that `acdf view` makes, of the build's own page where there is one.
 if ! "$acdf" view sky.acdf -o opened.html --quiet; then

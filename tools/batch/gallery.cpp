@@ -53,21 +53,21 @@ std::string source_thumbnail(const JobResult& job, const BatchJob& planned, cons
 std::string thumbnail(const std::string& path, const std::string& name) {
     File file;
     if (!File::open(path.c_str(), file).ok()) return "";
-    DensityImage image;
-    std::string shows = "density of " + name;
+    PdfImage image;
+    std::string shows = "pdf of " + name;
     if (file.kind() == ACDF_KIND_BRDF) {
-        image = draw_density(hemisphere_map(kDiscWidth), pdf_of(PlottedView{file.brdf(), {45.0, 0.0}}));
+        image = pdf_image(hemisphere_map(kDiscWidth), pdf_of(PlottedView{file.brdf(), {45.0, 0.0}}));
         shows += " for a view at 45 degrees";
     } else if (file.kind() == ACDF_KIND_LOCAL) {
-        image = draw_density(plot_map(build::Layout::latlong, kMapWidth),
-                             pdf_of(PlottedNormal{file.local(), {0.0f, 0.0f, 1.0f}}));
+        image = pdf_image(plot_map(build::Layout::latlong, kMapWidth),
+                          pdf_of(PlottedNormal{file.local(), {0.0f, 0.0f, 1.0f}}));
         shows += " for the normal +z";
     } else if (file.kind() == ACDF_KIND_ENVIRONMENT) {
-        image = draw_density(plot_map(build::Layout::latlong, kMapWidth), pdf_of(file.environment()));
+        image = pdf_image(plot_map(build::Layout::latlong, kMapWidth), pdf_of(file.environment()));
     } else {
         return "";
     }
-    const DensityRange range = automatic_range(image);
+    const PdfRange range = automatic_range(image);
     return html_image(encode_png(false_colour(image, range), {"acdf", "pdf in false colours"}), image.map.width,
                       image.map.height, shows + ", " + to_string(range) + " per steradian");
 }

@@ -3,7 +3,7 @@
 #include "input/brdf/brdf.h"
 #include "tools/plot/brdf.h"
 #include "tools/plot/colour.h"
-#include "tools/plot/density.h"
+#include "tools/plot/pdf_image.h"
 #include "tools/plot/range.h"
 
 #include <algorithm>
@@ -94,7 +94,7 @@ images::Picture probe_picture(const std::string& path, const input::ProbeOptions
 images::Picture brdf_picture(const std::string& source, int width) {
     const std::unique_ptr<input::Brdf> brdf = input::open_brdf(source);
     const double cosine = std::sqrt(0.5), wo[3] = {cosine, 0.0, cosine};
-    const DensityImage image = draw_density(hemisphere_map(width), [&](const float direction[3]) {
+    const PdfImage image = pdf_image(hemisphere_map(width), [&](const float direction[3]) {
         const double wi[3] = {double{direction[0]}, double{direction[1]}, double{direction[2]}};
         double rgb[3];
         brdf->evaluate(wo, wi, rgb);

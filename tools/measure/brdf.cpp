@@ -40,11 +40,11 @@ Baselines baselines(const compress::Reflected& reflected, const input::Brdf& brd
     out.table_bytes = mean.bytes();
     out.ggx_alpha = measure::best_ggx(reflected, views).alpha;
     const measure::GgxSampler ggx(out.ggx_alpha);
-    const std::vector<build::ViewPdf> densities = {
+    const std::vector<build::ViewPdf> pdfs = {
         [&](const double wo[3], const double wi[3]) { return mean.pdf(wo, wi); },
         [&](const double wo[3], const double wi[3]) { return centre.pdf(wo, wi); },
         [&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); }, measure::CosineSampler::pdf};
-    const std::vector<double> variances = build::relative_variances(densities, reflected, views);
+    const std::vector<double> variances = build::relative_variances(pdfs, reflected, views);
     out.table_mean = variances[0];
     out.table_centre = variances[1];
     out.ggx = variances[2];

@@ -48,7 +48,7 @@ void PlottedView::direction(float wo[3]) const {
     wo[2] = static_cast<float>(std::cos(angles.theta * degree));
 }
 
-Density pdf_of(const PlottedView& view) {
+PdfFunction pdf_of(const PlottedView& view) {
     return [view](const float wi[3]) {
         float wo[3];
         view.direction(wo);

@@ -1,7 +1,7 @@
 // The pdf of a BRDF file for one view, over the sphere of directions of light.
 #pragma once
 
-#include "tools/plot/density.h"
+#include "tools/plot/pdf_image.h"
 
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -31,7 +31,7 @@ struct PlottedView {
 
 /// The stored pdf, exactly: below the surface too, where a few samples fall. The view's File must
 /// outlive the result.
-Density pdf_of(const PlottedView& view);
+PdfFunction pdf_of(const PlottedView& view);
 
 /// As of environments: lines along the borders of cells, none where cells are narrower than two pixels.
 std::vector<float> knot_opacity(const PlottedView& view, const PlotMap& map);

@@ -38,14 +38,13 @@ float linear_to_srgb(float linear) {
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
-images::Picture false_colour(const DensityImage& image, const DensityRange& range, ColourMap map) {
+images::Picture false_colour(const PdfImage& image, const PdfRange& range, ColourMap map) {
     const Knots& knots = map == ColourMap::rainbow ? rainbow_knots : diverging_knots;
     images::Picture picture(image.map.width, image.map.height);
-    compress::parallel_for(std::size_t{0}, image.density.size(), [&](std::size_t i) {
-        const float density = image.density[i];
-        Colour colour = density == 0.0f ? zero_colour : background;
-        if (density > 0.0f)
-            colour = colour_at(knots, static_cast<float>(range.position(static_cast<double>(density))));
+    compress::parallel_for(std::size_t{0}, image.pdf.size(), [&](std::size_t i) {
+        const float pdf = image.pdf[i];
+        Colour colour = pdf == 0.0f ? zero_colour : background;
+        if (pdf > 0.0f) colour = colour_at(knots, static_cast<float>(range.position(static_cast<double>(pdf))));
         std::copy(colour.begin(), colour.end(), picture.values.begin() + static_cast<std::ptrdiff_t>(3 * i));
     });
     return picture;

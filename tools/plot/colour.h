@@ -2,7 +2,7 @@
 #pragma once
 
 #include "images/picture.h"
-#include "tools/plot/density.h"
+#include "tools/plot/pdf_image.h"
 #include "tools/plot/range.h"
 
 #include <array>
@@ -24,8 +24,7 @@ enum class ColourMap {
 
 /// RGB floats as displayed: the logarithm of the pdf from range.low to range.high, zero_colour where it is 0,
 /// background where nothing is shown.
-images::Picture false_colour(const DensityImage& image, const DensityRange& range,
-                             ColourMap map = ColourMap::rainbow);
+images::Picture false_colour(const PdfImage& image, const PdfRange& range, ColourMap map = ColourMap::rainbow);
 
 /// IEC 61966-2-1, of one channel.
 float linear_to_srgb(float linear);

@@ -50,11 +50,11 @@ PlotMap picture_map(const PlotArguments& options, const Plotted& source) {
     return plot_map(layout, latlong ? std::clamp(steps, 512, 2048) : std::clamp(steps, 512, 1024));
 }
 
-DensityRange chosen_range(const PlotArguments& options, const std::vector<DensityImage>& images) {
+PdfRange chosen_range(const PlotArguments& options, const std::vector<PdfImage>& images) {
     if (!options.range.empty()) return *parse_range(options.range);
-    DensityRange range = automatic_range(images.front());
-    for (const DensityImage& image : images) { // one for all of them
-        const DensityRange other = automatic_range(image);
+    PdfRange range = automatic_range(images.front());
+    for (const PdfImage& image : images) { // one for all of them
+        const PdfRange other = automatic_range(image);
         range = {std::min(range.low, other.low), std::max(range.high, other.high)};
     }
     if (!options.quiet)
@@ -71,7 +71,7 @@ std::string joined(const std::vector<std::string>& parts) {
 
 /// The numbers of a plot, before they become a picture.
 struct Drawing {
-    DensityImage image;
+    PdfImage image;
     std::vector<float> knots;   // opacity; empty where none are shown
     std::vector<float> horizon; // the same
 };
@@ -83,7 +83,7 @@ Drawing draw(const PlotArguments& options, const Plotted& source, bool with_knot
         return [=](double done, const char* what) { report(begin + width * done, what); };
     };
     Drawing drawing;
-    drawing.image = draw_density(picture_map(options, source), source.density, part(0.0, share));
+    drawing.image = pdf_image(picture_map(options, source), source.pdf, part(0.0, share));
     if (source.local) drawing.horizon = horizon_opacity(source.local->normal, drawing.image.map);
     if (with_knots && source.brdf) drawing.knots = knot_opacity(*source.brdf, drawing.image.map);
     else if (with_knots && source.local)
@@ -101,7 +101,7 @@ std::string checked_font(const PlotArguments& options) {
     return font;
 }
 
-images::Picture coloured(const Drawing& drawing, const DensityRange& range) {
+images::Picture coloured(const Drawing& drawing, const PdfRange& range) {
     images::Picture picture = false_colour(drawing.image, range);
     if (!drawing.knots.empty()) draw_knots(picture, drawing.knots);
     if (!drawing.horizon.empty()) draw_horizon(picture, drawing.horizon);
@@ -119,7 +119,7 @@ std::vector<Drawing> draw_all(const PlotArguments& options, const Plotted& sourc
     for (const NamedNormal& named : panel_normals) {
         Plotted panel;
         panel.local.emplace(PlottedNormal{source.local->local, named.normal, source.local->position});
-        panel.density = pdf_of(*panel.local);
+        panel.pdf = pdf_of(*panel.local);
         panel.columns = source.columns;
         panel.rows = source.rows;
         panel.panels = true;
@@ -131,9 +131,9 @@ std::vector<Drawing> draw_all(const PlotArguments& options, const Plotted& sourc
 std::vector<std::uint8_t> make_png(const PlotArguments& options, const Plotted& source) {
     const std::vector<Drawing> drawings = draw_all(options, source);
     const std::string font = options.legend ? checked_font(options) : "";
-    std::vector<DensityImage> densities;
-    for (const Drawing& drawing : drawings) densities.push_back(drawing.image);
-    const DensityRange range = chosen_range(options, densities);
+    std::vector<PdfImage> pdfs;
+    for (const Drawing& drawing : drawings) pdfs.push_back(drawing.image);
+    const PdfRange range = chosen_range(options, pdfs);
     images::Picture picture;
     if (source.panels) {
         std::vector<Panel> panels;
@@ -144,13 +144,13 @@ std::vector<std::uint8_t> make_png(const PlotArguments& options, const Plotted& 
         picture = coloured(drawings.front(), range);
     }
     if (options.legend) {
-        if (source.brdf && densities.front().map.hemisphere) {
+        if (source.brdf && pdfs.front().map.hemisphere) {
             float wo[3];
             source.brdf->direction(wo);
             picture = label_hemisphere(picture, wo, font);
         }
-        const bool zero = std::any_of(densities.begin(), densities.end(), [](const DensityImage& image) {
-            return std::find(image.density.begin(), image.density.end(), 0.0f) != image.density.end();
+        const bool zero = std::any_of(pdfs.begin(), pdfs.end(), [](const PdfImage& image) {
+            return std::find(image.pdf.begin(), image.pdf.end(), 0.0f) != image.pdf.end();
         });
         picture = add_legend(picture, {source.title, range, zero}, font);
     }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "images/picture.h"
-#include "tools/plot/density.h"
+#include "tools/plot/pdf_image.h"
 
 #include <string>
 

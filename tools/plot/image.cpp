@@ -22,9 +22,9 @@ std::vector<std::uint8_t> encode_rgb_exr(const images::Picture& picture, const I
     return images::encode_exr(picture, {"R", "G", "B"}, in_file(notes));
 }
 
-std::vector<std::uint8_t> encode_exr(const DensityImage& image, const ImageNotes& notes) {
+std::vector<std::uint8_t> encode_exr(const PdfImage& image, const ImageNotes& notes) {
     images::Picture picture(image.map.width, image.map.height, 1);
-    std::replace_copy(image.density.begin(), image.density.end(), picture.values.begin(), shows_nothing, 0.0f);
+    std::replace_copy(image.pdf.begin(), image.pdf.end(), picture.values.begin(), shows_nothing, 0.0f);
     return images::encode_exr(picture, {"Y"}, in_file(notes));
 }
 

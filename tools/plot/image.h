@@ -2,7 +2,7 @@
 #pragma once
 
 #include "images/picture.h"
-#include "tools/plot/density.h"
+#include "tools/plot/pdf_image.h"
 
 #include <cstdint>
 #include <string>
@@ -22,6 +22,6 @@ std::vector<std::uint8_t> encode_png(const images::Picture& picture, const Image
 std::vector<std::uint8_t> encode_rgb_exr(const images::Picture& picture, const ImageNotes& notes);
 
 /// One float channel Y: the pdf in sr^-1, and 0 where nothing is shown. Throws std::runtime_error.
-std::vector<std::uint8_t> encode_exr(const DensityImage& image, const ImageNotes& notes);
+std::vector<std::uint8_t> encode_exr(const PdfImage& image, const ImageNotes& notes);
 
 } // namespace acdf::tools

@@ -1,7 +1,7 @@
 #include "tools/plot/knots.h"
 
 #include "compress/parallel.h"
-#include "tools/plot/density.h"
+#include "tools/plot/pdf_image.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include "build/probe/projection.h"
 #include "images/picture.h"
 #include "tools/cli/progress.h"
-#include "tools/plot/density.h"
+#include "tools/plot/pdf_image.h"
 
 #include <acdf/reader.h>
 #include <acdf/views.h>

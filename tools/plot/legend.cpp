@@ -64,21 +64,21 @@ void paste(images::Picture& image, int x, int y, const images::Picture& part) {
 
 void draw_bar(images::Picture& image, const Legend& legend, const LegendLayout& layout) {
     const Box& bar = layout.bar;
-    DensityImage ramp{{build::Layout::latlong, 1, bar.height}, {}};
+    PdfImage ramp{{build::Layout::latlong, 1, bar.height}, {}};
     for (int y = 0; y < bar.height; ++y) {
         const double t = 1.0 - static_cast<double>(y) / std::max(bar.height - 1, 1);
-        const double density = legend.range.low * std::pow(legend.range.high / legend.range.low, t);
-        ramp.density.push_back(static_cast<float>(density));
+        const double pdf = legend.range.low * std::pow(legend.range.high / legend.range.low, t);
+        ramp.pdf.push_back(static_cast<float>(pdf));
     }
     const images::Picture colours = false_colour(ramp, legend.range, legend.colours);
     for (int x = 0; x < bar.width; ++x) paste(image, bar.x + x, bar.y, colours);
 }
 
 // 10^-3 where all labels are powers of ten, 0.002 else.
-void write_label(const Pen& pen, int x, int y, const Tick& tick, const DensityRange& range, int size) {
+void write_label(const Pen& pen, int x, int y, const Tick& tick, const PdfRange& range, int size) {
     if (!is_major({2, 0}, range)) return pen.write_power(x, y, "10", tick.exponent, size);
     char text[32];
-    std::snprintf(text, sizeof text, "%g", tick.density());
+    std::snprintf(text, sizeof text, "%g", tick.pdf());
     pen.write(x, y, text, size);
 }
 
@@ -87,7 +87,7 @@ void draw_ticks(images::Picture& image, const Legend& legend, const LegendLayout
     const double rows_a_decade = layout.bar.height / std::log10(legend.range.high / legend.range.low);
     int free_row = layout.height; // labels are written upwards; above this row there is room for one
     for (const Tick& tick : ticks(legend.range)) {
-        const int row = layout.row_of(tick.density(), legend.range);
+        const int row = layout.row_of(tick.pdf(), legend.range);
         const bool major = is_major(tick, legend.range);
         if (!major && rows_a_decade < 20.0) continue;
         fill(image, {edge, row, major ? layout.tick_length : layout.tick_length / 2, 1}, ink);
@@ -130,8 +130,8 @@ LegendLayout legend_layout(int picture_width, int picture_height) {
     return out;
 }
 
-int LegendLayout::row_of(double density, const DensityRange& range) const {
-    return bar.y + static_cast<int>(std::lround((1.0 - range.position(density)) * (bar.height - 1)));
+int LegendLayout::row_of(double pdf, const PdfRange& range) const {
+    return bar.y + static_cast<int>(std::lround((1.0 - range.position(pdf)) * (bar.height - 1)));
 }
 
 std::string find_font() {

@@ -23,14 +23,14 @@ struct LegendLayout {
     int tick_length = 0; ///< to the right of the bar
 
     /// The row of a pdf's tick.
-    int row_of(double density, const DensityRange& range) const;
+    int row_of(double pdf, const PdfRange& range) const;
 };
 
 LegendLayout legend_layout(int picture_width, int picture_height);
 
 struct Legend {
     std::vector<std::string> title; ///< parts by importance; those that do not fit are left out
-    DensityRange range;
+    PdfRange range;
     bool shows_zero = false; ///< explain the colour of pdf 0
     bool per_steradian = true;
     ColourMap colours = ColourMap::rainbow;

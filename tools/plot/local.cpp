@@ -17,7 +17,7 @@ AcdfLocalPoint point_of(const PlottedNormal& plotted) {
 
 } // namespace
 
-Density pdf_of(const PlottedNormal& plotted) {
+PdfFunction pdf_of(const PlottedNormal& plotted) {
     const AcdfLocalPoint point = point_of(plotted);
     return [view = plotted.local, point](const float direction[3]) { return view.pdf(point, direction); };
 }

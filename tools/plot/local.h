@@ -2,7 +2,7 @@
 #pragma once
 
 #include "images/picture.h"
-#include "tools/plot/density.h"
+#include "tools/plot/pdf_image.h"
 
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -22,7 +22,7 @@ struct PlottedNormal {
 };
 
 /// The stored pdf, exactly. The view's File must outlive the result.
-Density pdf_of(const PlottedNormal& plotted);
+PdfFunction pdf_of(const PlottedNormal& plotted);
 
 /// The borders of cells, as of environments.
 std::vector<float> knot_opacity(const PlottedNormal& plotted, const PlotMap& map,

@@ -16,8 +16,8 @@ constexpr double least_decades = 1.0, most_decades = 8.0;
 constexpr int bins_a_decade = 50, lowest_decade = -46, highest_decade = 39;
 constexpr int bin_count = (highest_decade - lowest_decade) * bins_a_decade;
 
-int bin_of(float density) {
-    const double decade = std::log10(static_cast<double>(density)) - lowest_decade;
+int bin_of(float pdf) {
+    const double decade = std::log10(static_cast<double>(pdf)) - lowest_decade;
     return std::clamp(static_cast<int>(decade * bins_a_decade), 0, bin_count - 1);
 }
 
@@ -28,19 +28,19 @@ struct Histogram {
     double total_solid_angle = 0.0, total_probability = 0.0;
 };
 
-Histogram histogram_of(const DensityImage& image) {
+Histogram histogram_of(const PdfImage& image) {
     Histogram h;
     const bool latlong = image.map.layout == build::Layout::latlong;
     for (int y = 0; y < image.map.height; ++y)
         for (int x = 0; x < image.map.width; ++x) {
-            const float density = image.at(x, y);
-            if (!(density > 0.0f)) continue;
+            const float pdf = image.at(x, y);
+            if (!(pdf > 0.0f)) continue;
             const double solid_angle = pixel_solid_angle(image.map, latlong ? 0 : x, y);
-            const auto bin = static_cast<std::size_t>(bin_of(density));
+            const auto bin = static_cast<std::size_t>(bin_of(pdf));
             h.solid_angle[bin] += solid_angle;
-            h.probability[bin] += solid_angle * static_cast<double>(density);
+            h.probability[bin] += solid_angle * static_cast<double>(pdf);
             h.total_solid_angle += solid_angle;
-            h.total_probability += solid_angle * static_cast<double>(density);
+            h.total_probability += solid_angle * static_cast<double>(pdf);
         }
     return h;
 }
@@ -65,11 +65,11 @@ double round_to_125(double exponent, bool up) {
 
 } // namespace
 
-double DensityRange::position(double density) const {
-    return std::clamp(std::log(density / low) / std::log(high / low), 0.0, 1.0);
+double PdfRange::position(double pdf) const {
+    return std::clamp(std::log(pdf / low) / std::log(high / low), 0.0, 1.0);
 }
 
-DensityRange automatic_range(const DensityImage& image) {
+PdfRange automatic_range(const PdfImage& image) {
     const Histogram h = histogram_of(image);
     if (!(h.total_solid_angle > 0.0)) return {0.1, 1.0};
     int first = 0, last = bin_count - 1;
@@ -89,10 +89,10 @@ DensityRange automatic_range(const DensityImage& image) {
     return {round_to_125(low, false), round_to_125(high, true)};
 }
 
-std::optional<DensityRange> parse_range(const std::string& text) {
+std::optional<PdfRange> parse_range(const std::string& text) {
     const std::size_t colon = text.find(':');
     if (colon == std::string::npos || colon == 0 || colon + 1 == text.size()) return {};
-    DensityRange range;
+    PdfRange range;
     char* end = nullptr;
     range.low = std::strtod(text.c_str(), &end);
     if (end != text.c_str() + colon) return {};
@@ -102,15 +102,15 @@ std::optional<DensityRange> parse_range(const std::string& text) {
     return range;
 }
 
-std::string to_string(const DensityRange& range) {
+std::string to_string(const PdfRange& range) {
     char text[64];
     std::snprintf(text, sizeof text, "%g:%g", range.low, range.high);
     return text;
 }
 
-double Tick::density() const { return round_number(mantissa, exponent); }
+double Tick::pdf() const { return round_number(mantissa, exponent); }
 
-std::vector<Tick> ticks(const DensityRange& range) {
+std::vector<Tick> ticks(const PdfRange& range) {
     constexpr double slack = 1e-9;
     std::vector<Tick> out;
     const int first = static_cast<int>(std::floor(std::log10(range.low)));
@@ -118,13 +118,13 @@ std::vector<Tick> ticks(const DensityRange& range) {
     for (int exponent = first; exponent <= last; ++exponent)
         for (int mantissa = 1; mantissa <= 9; ++mantissa) {
             const Tick tick{mantissa, exponent};
-            if (tick.density() >= range.low * (1.0 - slack) && tick.density() <= range.high * (1.0 + slack))
+            if (tick.pdf() >= range.low * (1.0 - slack) && tick.pdf() <= range.high * (1.0 + slack))
                 out.push_back(tick);
         }
     return out;
 }
 
-bool is_major(const Tick& tick, const DensityRange& range) {
+bool is_major(const Tick& tick, const PdfRange& range) {
     constexpr double slack = 1.0 + 1e-9;
     if (tick.mantissa == 1 || range.high * slack < 5.0 * range.low) return true;
     return (tick.mantissa == 2 || tick.mantissa == 5) && range.high <= 100.0 * range.low * slack;

@@ -59,7 +59,7 @@ void load_brdf(const PlotArguments& options, Plotted& source) {
     const auto view = parse_view(options.view.empty() ? "45" : options.view);
     if (!view) throw CLI::ValidationError("--view", "needs angles in degrees such as 60 or 60,30; theta below 90");
     source.brdf.emplace(PlottedView{file.brdf(), *view});
-    source.density = pdf_of(*source.brdf);
+    source.pdf = pdf_of(*source.brdf);
     source.columns = 1024;
     source.rows = 512;
     source.title = {shown_name(options.file), "view " + to_string(*view),
@@ -93,7 +93,7 @@ void load_local(const PlotArguments& options, Plotted& source) {
     source.panels = options.normal.empty() && !is_exr(options.output);
     const Normal chosen = source.panels ? panel_normals[0].normal : chosen_normal(options.file, options.normal);
     source.local.emplace(PlottedNormal{file.local(), chosen, chosen_position(options, file.local())});
-    source.density = pdf_of(*source.local);
+    source.pdf = pdf_of(*source.local);
     source.columns = file.axis(ACDF_AXIS_PHI).resolution;
     source.rows = file.axis(ACDF_AXIS_THETA).resolution;
     const Normal& n = source.local->normal;
@@ -131,7 +131,7 @@ void load_stored(const PlotArguments& options, Plotted& source) {
         fail_kind(options.file, source.stored.file, "plot",
                   "environments and BRDFs, as `acdf env` and `acdf brdf` make them");
     const File& file = source.stored.file;
-    source.density = pdf_of(file.environment());
+    source.pdf = pdf_of(file.environment());
     source.columns = file.axis(ACDF_AXIS_PHI).resolution;
     source.rows = file.axis(ACDF_AXIS_THETA).resolution;
     std::unordered_map<std::uint32_t, std::uint64_t> known;
@@ -145,7 +145,7 @@ void load_stored(const PlotArguments& options, Plotted& source) {
 void load_image(const PlotArguments& options, Plotted& source) {
     const input::Probe probe = load_probe(options.file, options.input, options.quiet);
     source.target = probe_texels(options.file, probe);
-    source.density = pdf_of(builder::grid_of(source.target));
+    source.pdf = pdf_of(builder::grid_of(source.target));
     source.columns = source.target.columns();
     source.rows = source.target.rows();
     source.title = {shown_name(options.file), "full resolution",

@@ -5,8 +5,8 @@
 #include "tools/cli/file_input.h"
 #include "tools/cli/probe_options.h"
 #include "tools/plot/brdf.h"
-#include "tools/plot/density.h"
 #include "tools/plot/local.h"
+#include "tools/plot/pdf_image.h"
 
 #include <acdf/builder.h>
 
@@ -35,7 +35,7 @@ struct PlotArguments {
 struct Plotted {
     LoadedFile stored;      // of an .acdf file, else empty
     builder::Target target; // of a probe, else empty
-    Density density;
+    PdfFunction pdf;
     std::uint32_t columns = 0, rows = 0;
     std::optional<PlottedView> brdf;    // of a BRDF file
     std::optional<PlottedNormal> local; // of a local environment file

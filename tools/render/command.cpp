@@ -108,7 +108,7 @@ public:
         for (const Compared& one : samplers)
             variances.insert(variances.end(), one.relative_variance_of_points.begin(),
                              one.relative_variance_of_points.end());
-        const DensityRange range = figure_range(variances);
+        const PdfRange range = figure_range(variances);
         for (std::size_t i = 0; i < samplers.size(); ++i) {
             const std::string& name = samplers[i].spec.text;
             picture(stems[i], samplers[i].rendering.first, name);
@@ -128,7 +128,7 @@ private:
             const double a = base.rendering.variance[i], b = one.rendering.variance[i];
             gain.push_back(a == b ? 1.0 : std::clamp(a / b, 1e-3, 1e3));
         }
-        const DensityRange ends = figure_range(gain);
+        const PdfRange ends = figure_range(gain);
         const double most = std::max({ends.high, 1.0 / ends.low, 8.0});
         figure(name, gain,
                {one.spec.text + " over " + base.spec.text, {1.0 / most, most}, ColourMap::diverging, false});

@@ -65,7 +65,7 @@ images::Picture figure_picture(const measure::Scene& scene, const measure::Scene
                                const std::vector<double>& values, const FigureImage& figure) {
     const int times =
         std::max(1, (kLeastWidth + static_cast<int>(scene.width) - 1) / static_cast<int>(scene.width));
-    DensityImage image;
+    PdfImage image;
     image.map.width = times * static_cast<int>(scene.width);
     image.map.height = times * static_cast<int>(scene.height);
     for (int y = 0; y < image.map.height; ++y)
@@ -73,8 +73,8 @@ images::Picture figure_picture(const measure::Scene& scene, const measure::Scene
             const std::size_t pixel =
                 static_cast<std::size_t>(y / times) * scene.width + static_cast<std::size_t>(x / times);
             const std::uint32_t point = points.of_pixel[pixel];
-            image.density.push_back(point == measure::ScenePoints::none ? shows_nothing
-                                                                        : static_cast<float>(values[point]));
+            image.pdf.push_back(point == measure::ScenePoints::none ? shows_nothing
+                                                                    : static_cast<float>(values[point]));
         }
     Legend legend;
     legend.title = {figure.title};
@@ -85,12 +85,12 @@ images::Picture figure_picture(const measure::Scene& scene, const measure::Scene
     return add_legend(false_colour(image, figure.range, figure.colours), legend, find_font());
 }
 
-DensityRange figure_range(std::vector<double> values) {
+PdfRange figure_range(std::vector<double> values) {
     values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !(v > 0.0); }), values.end());
     if (values.empty()) return {0.1, 1.0};
     std::sort(values.begin(), values.end());
     const std::size_t margin = values.size() / 100;
-    DensityRange range{round_number(values[margin], false), round_number(values[values.size() - 1 - margin], true)};
+    PdfRange range{round_number(values[margin], false), round_number(values[values.size() - 1 - margin], true)};
     range.high = std::max(range.high, 10.0 * range.low);
     range.low = std::max(range.low, 1e-8 * range.high);
     return range;

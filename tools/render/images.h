@@ -24,7 +24,7 @@ images::Picture displayed(const images::Picture& linear, double exposure);
 /// A positive figure a point in false colour with a legend, on a logarithmic scale.
 struct FigureImage {
     std::string title;
-    DensityRange range;
+    PdfRange range;
     ColourMap colours = ColourMap::rainbow;
     bool shows_zero = false;
 };
@@ -32,6 +32,6 @@ images::Picture figure_picture(const measure::Scene& scene, const measure::Scene
                                const std::vector<double>& values, const FigureImage& figure);
 
 /// Round ends that leave out 1 % of the positive values at each, at most eight decades.
-DensityRange figure_range(std::vector<double> values);
+PdfRange figure_range(std::vector<double> values);
 
 } // namespace acdf::tools

@@ -23,8 +23,7 @@ using measure::ShadingPoint;
 struct LightAccuracy {
     double relative_variance = 0.0, max_weight = 0.0, rms = 0.0;
 };
-LightAccuracy light_accuracy(const Target& target, const std::vector<float>& peaks,
-                             const std::vector<float>& density) {
+LightAccuracy light_accuracy(const Target& target, const std::vector<float>& peaks, const std::vector<float>& pdf) {
     compress::Sum second, error;
     double peak = 0.0;
     bool violated = false;
@@ -32,7 +31,7 @@ LightAccuracy light_accuracy(const Target& target, const std::vector<float>& pea
     for (std::uint32_t r = 0; r < target.rows; ++r)
         for (std::uint32_t c = 0; c < target.columns; ++c) {
             const std::size_t i = std::size_t{r} * target.columns + c;
-            const double f = target.values[i], p = density[i];
+            const double f = target.values[i], p = pdf[i];
             const double measure = target.row_measure[r] * target.column_measure[c];
             if (f > 0.0 && !(p > 0.0)) {
                 violated = true;

@@ -8,8 +8,8 @@
 #include "measure/samplers/rgl_sampler.h"
 #include "tools/cli/built.h"
 #include "tools/plot/brdf.h"
-#include "tools/plot/density.h"
 #include "tools/plot/knots.h"
+#include "tools/plot/pdf_image.h"
 #include "tools/sweep/advice.h"
 #include "tools/sweep/build.h"
 #include "tools/sweep/pixel_samples.h"
@@ -108,10 +108,10 @@ std::vector<Candidate> baselines(const input::Brdf& brdf, const compress::Reflec
     const std::vector<compress::View> views = build::random_views(count, brdf.isotropic);
     std::vector<Candidate> out;
     const auto add = [&](const char* system, const std::string& label,
-                         std::shared_ptr<const measure::LightSampler> sampler, const build::ViewPdf& density) {
+                         std::shared_ptr<const measure::LightSampler> sampler, const build::ViewPdf& pdf) {
         out.push_back(baseline_candidate(system, label, std::move(sampler)));
         // The same sums as of files.
-        auto measured = build::measure_views(density, reflected, views);
+        auto measured = build::measure_views(pdf, reflected, views);
         if (points.empty())
             for (const build::ViewAccuracy& each : measured) points.push_back({point_of(each.view), each.albedo});
         measured = build::with_lost_samples(std::move(measured)); // below the surface
@@ -149,11 +149,11 @@ void add_pictures(Sweep& sweep, const compress::Reflected& reflected, const std:
     const double x = std::sqrt(1.0 - wo[2]);
     const build::ViewPdf uniform = [](const double*, const double*) { return 0.5 / ACDF_PI; };
     const double albedo = build::measure_views(uniform, reflected, {{x, 0.0}}).front().albedo;
-    const Density own = [&](const float wi[3]) {
+    const PdfFunction own = [&](const float wi[3]) {
         const double w[3] = {wi[0], wi[1], wi[2]};
         return w[2] > 0.0 && albedo > 0.0 ? static_cast<float>(reflected(wo, w) / albedo) : 0.0f;
     };
-    const DensityImage full = draw_density(map, own);
+    const PdfImage full = pdf_image(map, own);
     sweep.range = automatic_range(full);
     add_colour_bar(sweep);
     add_picture(sweep, full, {}, {}, "The BRDF itself times cosine, seen from 45 degrees",
@@ -161,7 +161,7 @@ void add_pictures(Sweep& sweep, const compress::Reflected& reflected, const std:
                 "lower half is below the surface.");
     for (std::size_t i : pictured(candidates, sweep)) {
         const PlottedView plotted{candidates[i].file->file.brdf(), angles};
-        add_picture(sweep, draw_density(map, pdf_of(plotted)), knot_opacity(plotted, map), {},
+        add_picture(sweep, pdf_image(map, pdf_of(plotted)), knot_opacity(plotted, map), {},
                     picture_title(candidates[i].row),
                     "The pdf of this file for the same view, in the same colours, with the borders of its cells.");
     }

@@ -177,7 +177,7 @@ std::vector<std::size_t> pictured(const std::vector<Candidate>& candidates, cons
     return out;
 }
 
-void add_picture(Sweep& sweep, const DensityImage& image, const std::vector<float>& knots,
+void add_picture(Sweep& sweep, const PdfImage& image, const std::vector<float>& knots,
                  const std::vector<float>& horizon, std::string title, std::string description) {
     images::Picture picture = false_colour(image, sweep.range);
     if (!knots.empty()) draw_knots(picture, knots);
@@ -188,10 +188,10 @@ void add_picture(Sweep& sweep, const DensityImage& image, const std::vector<floa
 
 void add_colour_bar(Sweep& sweep) {
     constexpr int width = 256;
-    DensityImage ramp{{build::Layout::latlong, width, 1}, {}};
+    PdfImage ramp{{build::Layout::latlong, width, 1}, {}};
     const double decades = std::log(sweep.range.high / sweep.range.low);
     for (int x = 0; x < width; ++x)
-        ramp.density.push_back(static_cast<float>(sweep.range.low * std::exp(decades * (x + 0.5) / width)));
+        ramp.pdf.push_back(static_cast<float>(sweep.range.low * std::exp(decades * (x + 0.5) / width)));
     sweep.colour_bar = encode_png(false_colour(ramp, sweep.range), {"acdf", "colours"});
 }
 

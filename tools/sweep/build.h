@@ -82,7 +82,7 @@ std::vector<std::size_t> pictured(const std::vector<Candidate>& candidates, cons
 constexpr int kPictureWidth = 640;
 
 /// Adds a picture in the colours of sweep.range; `opacity` (of knots, of a horizon) may be empty.
-void add_picture(Sweep& sweep, const DensityImage& image, const std::vector<float>& knots,
+void add_picture(Sweep& sweep, const PdfImage& image, const std::vector<float>& knots,
                  const std::vector<float>& horizon, std::string title, std::string description);
 /// The colours of sweep.range from low to high.
 void add_colour_bar(Sweep& sweep);

@@ -3,8 +3,8 @@
 #include "build/own_terms.h"
 #include "measure/samplers/full_cdf.h"
 #include "tools/cli/built.h"
-#include "tools/plot/density.h"
 #include "tools/plot/knots.h"
+#include "tools/plot/pdf_image.h"
 #include "tools/sweep/baselines.h"
 #include "tools/sweep/build.h"
 #include "tools/sweep/occluders.h"
@@ -60,14 +60,14 @@ Candidate make_file(const builder::Target& target, const builder::Source& source
 
 void add_pictures(Sweep& sweep, const compress::Target& target, const std::vector<Candidate>& candidates) {
     const build::Map map = plot_map(build::Layout::latlong, kPictureWidth);
-    const DensityImage full = draw_density(map, pdf_of(target));
+    const PdfImage full = pdf_image(map, pdf_of(target));
     sweep.range = automatic_range(full);
     add_colour_bar(sweep);
     add_picture(sweep, full, {}, {}, "The probe itself, full resolution",
                 "The probe's own pdf in false colour, as a lat-long map.");
     for (std::size_t i : pictured(candidates, sweep)) {
         const EnvironmentView view = candidates[i].file->file.environment();
-        add_picture(sweep, draw_density(map, pdf_of(view)), knot_opacity(view, map), {},
+        add_picture(sweep, pdf_image(map, pdf_of(view)), knot_opacity(view, map), {},
                     picture_title(candidates[i].row),
                     "The pdf that this file stores, in the same colours, with the borders of its cells.");
     }
@@ -75,10 +75,10 @@ void add_pictures(Sweep& sweep, const compress::Target& target, const std::vecto
 
 /// `out`: alone, and with an MIS partner.
 void add_situations(const compress::Target& target, const measure::LightSampler& sampler,
-                    const std::vector<float>& density, const std::vector<SurfacePoint>& points, Scale scale,
+                    const std::vector<float>& pdf, const std::vector<SurfacePoint>& points, Scale scale,
                     const SweepOptions& options, Lit* out) {
     const measure::MapLight light = map_light(target, options);
-    const std::vector<PointVariance> exact = point_variances(target, density, points);
+    const std::vector<PointVariance> exact = point_variances(target, pdf, points);
     const SurfaceVariances variances = summary(exact, scale);
     const SampledVariances sampled =
         sobol_variances(target, light, sampler, points, exact, scale, options.visible.spp, options.seeds);
@@ -112,10 +112,10 @@ Sweep sweep_environment(const builder::Target& fitted, const builder::Source& so
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         part(0.7, 0.2)(static_cast<double>(i) / static_cast<double>(candidates.size()), "measuring");
         const measure::LightSampler& sampler = *candidates[i].sampler;
-        const std::vector<float> density = texel_pdfs(target, sampler);
+        const std::vector<float> pdf = texel_pdfs(target, sampler);
         SweepRow& row = candidates[i].row;
-        add_situations(target, sampler, density, open, Scale::own, options, &row.lit[open_alone]);
-        add_situations(target, sampler, density, hidden, Scale::picture, options, &row.lit[hidden_alone]);
+        add_situations(target, sampler, pdf, open, Scale::own, options, &row.lit[open_alone]);
+        add_situations(target, sampler, pdf, hidden, Scale::picture, options, &row.lit[hidden_alone]);
     }
     if (options.pictures) add_pictures(sweep, target, candidates);
     finish_rows(sweep, std::move(candidates), timed_points(), options, part(0.9, 0.1));

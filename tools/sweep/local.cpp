@@ -4,7 +4,7 @@
 #include "build/own_terms.h"
 #include "compress/sum.h"
 #include "tools/cli/built.h"
-#include "tools/plot/density.h"
+#include "tools/plot/pdf_image.h"
 #include "tools/sweep/baselines.h"
 #include "tools/sweep/build.h"
 #include "tools/sweep/surface.h"
@@ -68,8 +68,8 @@ Candidate make_file(const builder::Target& target, const builder::Source& source
 }
 
 /// What a surface sees of the target, at full resolution: the pdf that all samplers approach.
-Density reflected_pdf(const compress::Target& target, const Normal& n) {
-    const Density light = pdf_of(target);
+PdfFunction reflected_pdf(const compress::Target& target, const Normal& n) {
+    const PdfFunction light = pdf_of(target);
     const double length = std::hypot(double{n[0]}, double{n[1]}, double{n[2]});
     compress::Sum sum;
     const build::TexelCosines cosines(target);
@@ -90,7 +90,7 @@ Density reflected_pdf(const compress::Target& target, const Normal& n) {
 void add_local_pictures(Sweep& sweep, const compress::Target& target, const std::vector<Candidate>& candidates) {
     const Normal normal = {1.0f, 0.0f, 1.0f};
     const build::Map map = plot_map(build::Layout::latlong, kPictureWidth);
-    const DensityImage full = draw_density(map, reflected_pdf(target, normal));
+    const PdfImage full = pdf_image(map, reflected_pdf(target, normal));
     sweep.range = automatic_range(full);
     add_colour_bar(sweep);
     const std::vector<float> horizon = horizon_opacity(normal, map);
@@ -99,7 +99,7 @@ void add_local_pictures(Sweep& sweep, const compress::Target& target, const std:
     for (std::size_t i : pictured(candidates, sweep)) {
         const PlottedNormal plotted{candidates[i].file->file.local(), normal};
         add_picture(
-            sweep, draw_density(map, pdf_of(plotted)), knot_opacity(plotted, map), horizon,
+            sweep, pdf_image(map, pdf_of(plotted)), knot_opacity(plotted, map), horizon,
             picture_title(candidates[i].row),
             "The pdf of this file for the same normal, in the same colours, with the borders of its cells.");
     }

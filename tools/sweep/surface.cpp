@@ -68,13 +68,13 @@ struct Sums {
 };
 
 PointVariance variance_at(const compress::Target& target, const build::TexelCosines& cosines,
-                          const std::vector<float>& density, const SurfacePoint& point) {
+                          const std::vector<float>& pdf, const SurfacePoint& point) {
     Sums sums;
     for (std::uint32_t r = 0; r < target.rows; ++r) {
         const std::size_t first = std::size_t{r} * target.columns;
         const float* light = target.row(r);
         const float* mean = target.means.size() == 1 ? target.means[0].data() + first : light;
-        const float* p = density.data() + first;
+        const float* p = pdf.data() + first;
         double row[5] = {};
         cosines.for_each_above(point.n.data(), r, [&](std::uint32_t c, double cosine) {
             if (light[c] == 0.0f || (!point.hidden.empty() && point.hidden[first + c])) return;
@@ -95,12 +95,12 @@ PointVariance variance_at(const compress::Target& target, const build::TexelCosi
 
 } // namespace
 
-std::vector<PointVariance> point_variances(const compress::Target& target, const std::vector<float>& density,
+std::vector<PointVariance> point_variances(const compress::Target& target, const std::vector<float>& pdf,
                                            const std::vector<SurfacePoint>& points) {
     const build::TexelCosines cosines(target);
     std::vector<PointVariance> out(points.size());
     compress::parallel_for(std::size_t{0}, points.size(),
-                           [&](std::size_t i) { out[i] = variance_at(target, cosines, density, points[i]); });
+                           [&](std::size_t i) { out[i] = variance_at(target, cosines, pdf, points[i]); });
     return out;
 }
 

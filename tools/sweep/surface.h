@@ -40,7 +40,7 @@ struct PointVariance {
 
 /// By summation over texels with each one's cosine in its middle. L^2 is the target's mean square over a texel. The
 /// same for any number of threads.
-std::vector<PointVariance> point_variances(const compress::Target& target, const std::vector<float>& density,
+std::vector<PointVariance> point_variances(const compress::Target& target, const std::vector<float>& pdf,
                                            const std::vector<SurfacePoint>& points);
 
 /// What each point's variance is divided by. In the open its own E^2; where something is in the way

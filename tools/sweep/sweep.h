@@ -113,7 +113,7 @@ struct Sweep {
     std::uint32_t conditions = 0;   ///< normals or views that means are over
     std::vector<std::string> notes; ///< what a reader of the figures should know
     std::vector<SweepPicture> pictures;
-    DensityRange range;                   ///< of their colours
+    PdfRange range;                       ///< of their colours
     std::vector<std::uint8_t> colour_bar; ///< PNG, low to high
     bool timed = true;
     SampleCosts costs;

@@ -67,7 +67,7 @@ Direction mirrorball_direction(double a, double b) {
 
 // Solid angle per area of the (a, b) plane: that of the angular map is pi sin(pi r) / r; the mirror ball
 // preserves areas.
-double disc_density(Layout layout, double a, double b) {
+double solid_angle_per_area(Layout layout, double a, double b) {
     if (layout == Layout::mirrorball) return 4.0;
     const double r = compress::norm(a, b);
     return r > 0.0 ? compress::pi * compress::sine_cosine(r).sine / r : compress::pi * compress::pi;
@@ -80,8 +80,8 @@ double disc_slice(Layout layout, double a, double b0, double b1) {
     const double middle = 0.5 * (b0 + b1), half = 0.5 * (b1 - b0);
     double sum = 0.0;
     for (int i = 0; i < 2; ++i)
-        sum += weight[i] * (disc_density(layout, a, middle + half * node[i]) +
-                            disc_density(layout, a, middle - half * node[i]));
+        sum += weight[i] * (solid_angle_per_area(layout, a, middle + half * node[i]) +
+                            solid_angle_per_area(layout, a, middle - half * node[i]));
     return half * sum;
 }
 

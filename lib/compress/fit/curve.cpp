@@ -34,7 +34,7 @@ std::vector<double> cumulative(const Distribution& distribution) {
 }
 
 /// The pdf at the grid borders: the mean of the steps on either side.
-std::vector<double> border_density(const Distribution& distribution) {
+std::vector<double> border_pdf(const Distribution& distribution) {
     const std::size_t n = distribution.mass.size();
     std::vector<double> density(n), y(n + 1);
     for (std::size_t i = 0; i < n; ++i) density[i] = distribution.mass[i] / distribution.measure[i];
@@ -84,7 +84,7 @@ Curve fit_curve_cdf(const Distribution& distribution, const CurveBudget& budget)
 }
 
 Curve fit_curve_pdf(const Distribution& distribution, const CurveBudget& budget) {
-    Curve curve = curve_through(distribution, douglas_peucker(borders(distribution), border_density(distribution),
+    Curve curve = curve_through(distribution, douglas_peucker(borders(distribution), border_pdf(distribution),
                                                               budget.segments, budget.epsilon));
     std::uint32_t begin = 0;
     for (std::size_t s = 0; s < curve.segments(); ++s) {

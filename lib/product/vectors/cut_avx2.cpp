@@ -1,8 +1,8 @@
 #if ACDF_BATCH_X86
 #define ACDF_WIDTH 4
 #include "product/vectors/cut.h"
-#include "product/vectors/cut_density_kernel.h"
 #include "product/vectors/cut_kernel.h"
+#include "product/vectors/cut_pdf_kernel.h"
 
 void acdf::cut_sample_avx2(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                            const double (*u)[2], std::size_t count, AcdfDirectionSample* out) {
@@ -10,6 +10,6 @@ void acdf::cut_sample_avx2(const AcdfLocal* local, const AcdfLocalPoint* point, 
 }
 void acdf::cut_pdf_avx2(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                         const float (*directions)[3], std::size_t count, float* out) {
-    cut_densities(*local, *point, *cut, directions, count, out);
+    cut_pdfs(*local, *point, *cut, directions, count, out);
 }
 #endif

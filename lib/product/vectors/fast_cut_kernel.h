@@ -3,8 +3,8 @@
 // fast_kernel.h has them.
 #pragma once
 
-#include "batch/fast_density_kernel.h"
 #include "batch/fast_kernel.h"
+#include "batch/fast_pdf_kernel.h"
 #include "product/vectors/alone.h"
 
 #include <acdf/product/fast_cut.h>
@@ -41,8 +41,8 @@ ACDF_LANE void draw_cut_block(const AcdfLocal& local, const AcdfLocalPoint& poin
 }
 
 /* acdf_fast_cut_pdf of up to kBlock lanes. */
-ACDF_LANE void cut_density_block(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfFastCut& cut,
-                                 const float (*directions)[3], std::size_t count, float* out) {
+ACDF_LANE void cut_pdf_block(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfFastCut& cut,
+                             const float (*directions)[3], std::size_t count, float* out) {
     FastSquares f;
     const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes;
     const std::uint64_t lost = find_squares(local, directions, count, &f);
@@ -55,7 +55,7 @@ ACDF_LANE void cut_density_block(const AcdfLocal& local, const AcdfLocalPoint& p
         f.cells.all[i] = share.all * ACDF_FAST_STEPS;
     }
     pad_lanes(count, &f.cells);
-    store_densities(local, f.cells, count, out);
+    store_pdfs(local, f.cells, count, out);
     leave_alone(lost, count,
                 [&](std::size_t i) { out[i] = acdf::alone::cut_pdf(local, point, cut, directions[i]); });
 }
@@ -71,8 +71,8 @@ ACDF_LANE void sample_all_of_cut(const AcdfLocal& local, const AcdfLocalPoint& p
 ACDF_LANE void pdf_all_of_cut(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfFastCut& cut,
                               const float (*directions)[3], std::size_t count, float* out) {
     for (std::size_t first = 0; first < count; first += kBlock)
-        cut_density_block(local, point, cut, directions + first, std::min<std::size_t>(count - first, kBlock),
-                          out + first);
+        cut_pdf_block(local, point, cut, directions + first, std::min<std::size_t>(count - first, kBlock),
+                      out + first);
 }
 
 } // namespace

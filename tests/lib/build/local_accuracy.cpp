@@ -89,7 +89,7 @@ File opened(const build::Local& local) {
     return file;
 }
 
-TEST(LocalFiles, ChannelsAndFiltersCountAsSamplesTell) {
+TEST(LocalFiles, ChannelsAndFiltersCountAsInSamples) {
     ACDF_NOT_SANITIZED();
     std::mt19937_64 random(4);
     Lookup lookup = noise(96, 48, 0.0f, random);
@@ -108,7 +108,7 @@ TEST(LocalFiles, ChannelsAndFiltersCountAsSamplesTell) {
 }
 
 // The cosine varies within texels of ten degrees.
-TEST(LocalFiles, MapsOfFewTexelsCountAsSamplesTell) {
+TEST(LocalFiles, MapsOfFewTexelsCountAsInSamples) {
     std::mt19937_64 random(6);
     const Lookup lookup = noise(32, 16, 0.1f, random);
     const compress::Target target = target_of(lookup, 1);

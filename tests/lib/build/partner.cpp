@@ -31,7 +31,7 @@ std::vector<double> filled(const Probe& probe, const Vector& n, double ratio) {
     return out;
 }
 
-TEST(Partner, DensitiesIntegrateToOneAndAreThoseOfSamples) {
+TEST(Partner, PdfsIntegrateToOneAndAreThoseOfSamples) {
     std::mt19937_64 random(5);
     const std::vector<Probe> all = probes();
     for (const Kind& kind : kinds) {
@@ -132,7 +132,7 @@ TEST(Partner, LocalFilesComeNearWaterFillingOfEachNormal) {
     }
 }
 
-TEST(Partner, TellsWhatItIsAndWhatToDraw) {
+TEST(Partner, ReturnsItsKindAndShares) {
     const std::vector<Probe> all = probes();
     Made alone, with, environment;
     make(all[1], {true, {}}, alone);

@@ -133,7 +133,7 @@ TEST(TablePartner, HasLessNoiseThanAFileThatIsMadeToBeUsedAlone) {
     }
 }
 
-TEST(TablePartner, SamplesFollowTheDensity) {
+TEST(TablePartner, SamplesFollowThePdf) {
     const input::NpyArray array = noisy_array({kBins, kX, kY}, 5, 0.1), other = smooth();
     const LoadedTable loaded(table_of(array, beside(other, ACDF_HEURISTIC_BALANCE, 1.0)).bytes);
     std::mt19937_64 random(11);

@@ -166,7 +166,7 @@ TEST(GoldenFrame, DirectionsDerivedByHand) {
     }
 }
 
-TEST(GoldenFrame, DensityIsZeroInEveryMirrorImage) {
+TEST(GoldenFrame, PdfIsZeroInEveryMirrorImage) {
     acdf::File file;
     ASSERT_TRUE(acdf::File::open((kGolden / "one_texel.acdf").c_str(), file).ok());
     const double x = kMiddleSin * kSin22, y = kMiddleSin * kCos22, z = kMiddleZ;

@@ -28,7 +28,7 @@ TEST_P(GoldenLocal, SamplesTheSameSamples) {
     }
 }
 
-TEST_P(GoldenLocal, DrawsTheSameSamplesByRuntimeTables) { // but for the rounding of floats
+TEST_P(GoldenLocal, HasTheSameSamplesByRuntimeTables) { // but for the rounding of floats
     for (const acdf_test::GoldenSample& line : lines_) {
         const auto s = file_.local().sample(line.given, line.u[0], line.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_NEAR(s.direction[i], line.direction[i], 4e-7);

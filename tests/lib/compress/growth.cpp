@@ -208,7 +208,7 @@ struct Bins {
     }
 };
 
-TEST(TreeSizer, TellsTheBytesThatEncodingMakes) {
+TEST(TreeSizer, PredictsTheBytesThatEncodingMakes) {
     ACDF_NOT_SANITIZED();
     const std::vector<Target> targets{noise(), lights()};
     for (const double most_ratio : {kNoBound, 1.01}) {

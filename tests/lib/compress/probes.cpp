@@ -65,7 +65,7 @@ protected:
     Target target_;
 };
 
-TEST_P(Probe, EveryFitIsADensityThatCoversIt) {
+TEST_P(Probe, EveryFitIsAPdfThatCoversIt) {
     const bool whole = std::string(GetParam().name) == "courtyard"; // one of them as large as it is
     const Target target = whole ? target_ : averaged(target_);
     for (const auto& fit : acdf_test::all_fits(64, 64, 4096)) acdf_test::check_fit(target, fit);
@@ -100,7 +100,7 @@ void PrintTo(const Projected& projected, std::ostream* out) { *out << projected.
 
 class Projection : public ::testing::TestWithParam<Projected> {};
 
-TEST_P(Projection, EveryFitIsADensityThatCoversIt) {
+TEST_P(Projection, EveryFitIsAPdfThatCoversIt) {
     const std::string path = std::string(acdf_test::kTestData) + "/probes/" + GetParam().file;
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent; set ACDF_TEST_DATA";
     acdf::input::ProbeOptions options;

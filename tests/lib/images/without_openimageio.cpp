@@ -57,7 +57,7 @@ TEST(WithoutOpenImageIO, RadianceOfOtherProgramsIsRead) {
         }
 }
 
-TEST(WithoutOpenImageIO, OtherFormatsAreToldWhy) {
+TEST(WithoutOpenImageIO, OtherFormatsAreRefusedWithTheReason) {
     const Folder folder;
     test::write_rgb(folder / "a.tif", kWidth, kHeight, pixels());
     const ImageFile file(folder / "a.tif");
@@ -72,7 +72,7 @@ TEST(WithoutOpenImageIO, WhatCannotBeOpenedIsNoMatterOfFormats) {
     EXPECT_NE(file.error().find("No such file"), std::string::npos) << file.error();
 }
 
-TEST(WithoutOpenImageIO, DamagedFilesAreToldByTheirOwnReader) {
+TEST(WithoutOpenImageIO, DamagedFilesAreReportedByTheirOwnReader) {
     const Folder folder;
     const std::string path = folder / "cut.exr";
     test::write_rgb(path, kWidth, kHeight, pixels());

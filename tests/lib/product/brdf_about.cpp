@@ -70,7 +70,7 @@ std::vector<float> about(const AcdfBrdf& brdf, const AcdfBrdfView& view, const f
     return out;
 }
 
-TEST(BrdfAbout, DensitiesAreThoseOfCellsNearby) {
+TEST(BrdfAbout, PdfsAreThoseOfCellsNearby) {
     for (auto& [name, spec] : brdf_forms()) {
         SCOPED_TRACE(name);
         const TablesPair pair(spec.encode());
@@ -89,7 +89,7 @@ TEST(BrdfAbout, DensitiesAreThoseOfCellsNearby) {
     }
 }
 
-TEST(BrdfAbout, WhateverIsGivenDensitiesAreNumbers) {
+TEST(BrdfAbout, WhateverIsGivenPdfsAreNumbers) {
     const TablesPair pair(shared_brdf().encode());
     const AcdfBrdf brdf = pair.fast.brdf().data();
     const float wo[3] = {0.6f, 0.0f, 0.8f}, nan = std::nanf(""), large = 3e38f;

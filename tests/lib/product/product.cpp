@@ -191,7 +191,7 @@ TEST(Product, SeveralSamplesOfFaintPartsAreThoseOfSingleCalls) {
 }
 
 // The light's part, over the squares of its grid, in which it is constant; the lobe's part is the lobe's own.
-TEST(Product, DensityIntegratesToOne) {
+TEST(Product, PdfIntegratesToOne) {
     int cuts = 0, groups = 0, open = 0;
     each_point(false, [&](const LoadedLocal& loaded, const TestLobe& lobe, const Sampler& sampler,
                           const Sampler::Point& point, const std::string& name, std::mt19937_64&) {

@@ -85,7 +85,7 @@ void expect_sampled(const AcdfCut& cut, const double (&u)[2]) {
     }
 }
 
-TEST(ProductCut, NumbersDrawThePartThatHoldsThem) {
+TEST(ProductCut, NumbersSampleThePartThatHoldsThem) {
     for (std::uint32_t seed = 0; seed < 300; ++seed) {
         const int parts = 1 + static_cast<int>(seed * 37 % ACDF_CUT_MAX_PARTS);
         SCOPED_TRACE(testing::Message() << "seed " << seed << ", parts " << parts);

@@ -61,7 +61,7 @@ TEST(FastCut, TablesHaveTheTileThatGetsMostAndSolidAngles) {
     });
 }
 
-TEST(FastCut, MassesAreWhatDensitiesFind) {
+TEST(FastCut, MassesAreWhatPdfsFind) {
     int given = 0;
     each_cut_file([&](const AcdfLocal& light, std::uint32_t seed) {
         std::mt19937_64 rng(seed);

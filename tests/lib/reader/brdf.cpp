@@ -149,7 +149,7 @@ TEST(BrdfReader, nearestTreeServesWithoutRows) {
     }
 }
 
-TEST(BrdfReader, samplesAreWhatPdfTells) {
+TEST(BrdfReader, samplesHaveTheirPdf) {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> u(0.0, 1.0);
     std::vector<BrdfSpec> forms = shared_forms();
@@ -195,7 +195,7 @@ TEST(BrdfReader, anyNumbersAreSafe) {
 }
 
 // A half-vector however short has a direction.
-TEST(BrdfReader, nearlyOppositeDirectionsHaveADensity) {
+TEST(BrdfReader, nearlyOppositeDirectionsHaveAPdf) {
     for (const BrdfSpec& given : shared_forms()) {
         BrdfSpec spec = given;
         const Bytes bytes = spec.encode();
@@ -212,7 +212,7 @@ TEST(BrdfReader, nearlyOppositeDirectionsHaveADensity) {
 }
 
 // Bins of share 0: samples follow the pdf: the part of the cosine and nothing else.
-TEST(BrdfReader, viewsWithoutATableDrawThePartOfTheCosine) {
+TEST(BrdfReader, viewsWithoutATableSampleThePartOfTheCosine) {
     BrdfSpec spec = shared_brdf();
     spec.diffuse_share = 0.25f;
     for (BinSpec& bin : spec.bins) bin.share = 0.0f;

@@ -79,7 +79,7 @@ protected:
     int moved_ = 0, all_ = 0;
 };
 
-TEST_P(BrdfInvert, drawsWhatWasDrawn) {
+TEST_P(BrdfInvert, samplesWhatWasSampled) {
     for (int i = 0; i < 4000; ++i) {
         const Direction wo = some_wo(i);
         const auto s = view_.sample(wo.data(), uniform(), uniform());
@@ -116,7 +116,7 @@ TEST_P(BrdfInvert, drawsDirectionsAtTheBordersOfCells) {
 }
 
 // Of samples that are not moved the very numbers come back.
-TEST_P(BrdfInvert, tellsTheNumbersOfSamples) {
+TEST_P(BrdfInvert, returnsTheNumbersOfSamples) {
     for (int i = 0; i < 2000; ++i) {
         const Direction wo = at_angles(0.05 + 0.9 * uniform());
         const double share = double{spec_.diffuse_share}, u[2] = {uniform(), share + (1.0 - share) * uniform()};

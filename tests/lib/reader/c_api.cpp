@@ -36,7 +36,7 @@ TEST(CApi, SamplesAsTheCppInterface) {
     }
 }
 
-TEST(CApi, TellsWhatIsInside) {
+TEST(CApi, ReturnsWhatIsInside) {
     const auto bytes = small_environment();
     const Handle handle(acdf_from_memory(bytes.data(), bytes.size(), nullptr), acdf_close);
     const AcdfFile* file = handle.get();

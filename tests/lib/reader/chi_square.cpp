@@ -28,7 +28,7 @@ double chi_square_quantile(double degrees, double tail) {
 }
 
 // Counts over the quarters of all cells (halved at t = 1/2 on both axes), located by the slow decoder.
-TEST(EnvironmentView, samplesFollowTheDensity) {
+TEST(EnvironmentView, samplesFollowThePdf) {
     const int samples = repeated(40000);
     // Šidák: all trees together fail by chance once in a hundred times; the seeds are fixed.
     const double tail = 1.0 - std::pow(1.0 - 0.01, 1.0 / tree_count);

@@ -210,7 +210,7 @@ TEST(Linked, otherKindsAreRefused) {
     EXPECT_EQ(acdf_table_sampled_axes(e), 0u);
 }
 
-TEST(Linked, noItemsAPlaceAreRefused) {
+TEST(Linked, noItemsAConditionAreRefused) {
     const Both light(golden("local")), brdf(golden("brdf")),
         table(std::string(ACDF_TEST_DIR "/../format/vectors/table.acdf"));
     const std::vector<float> up = {0.0f, 0.0f, 1.0f};

@@ -181,7 +181,7 @@ TEST(NormalBins, everyCornerServesItself) {
     EXPECT_EQ(seen.size(), 102u);
 }
 
-TEST(LocalView, normalsThatAreNoneHaveNoDensity) {
+TEST(LocalView, invalidNormalsHavePdfZero) {
     const LoadedLocal shared(lit_local()), separate(separate_local());
     const float up[3] = {0.0f, 0.0f, 1.0f}, nan = std::nanf(""), inf = HUGE_VALF;
     const float bad[][3] = {{0, 0, 0},   {-0.0f, 0, 0}, {nan, 0, 1},   {0, nan, 1},
@@ -197,7 +197,7 @@ TEST(LocalView, normalsThatAreNoneHaveNoDensity) {
         }
 }
 
-TEST(LocalView, directionsThatAreNoneHaveNoDensity) {
+TEST(LocalView, invalidDirectionsHavePdfZero) {
     LocalSpec spec = lit_local();
     for (float cosine : {0.0f, 0.5f}) {
         spec.cosine_share = cosine;
@@ -210,7 +210,7 @@ TEST(LocalView, directionsThatAreNoneHaveNoDensity) {
     }
 }
 
-TEST(LocalView, whatIsStoredIsTold) {
+TEST(LocalView, storedFiguresAreReturned) {
     const LoadedLocal shared(shared_local()); // corners 0 +z, 1 +x, 2 +y, 3 -x (not stored), 4 -y, 5 -z
     const auto stored = [&](float x, float y, float z) {
         const float n[3] = {x, y, z};

@@ -227,7 +227,7 @@ TEST(FastShape, TablesFindTheTilesOfSquaresThatAreAllCut) {
 }
 
 // A sample for a normal that serves once is that at its point, to the bit: also where bright tiles end.
-TEST(FastShape, DrawsOfANormalAreThoseOfItsPoint) {
+TEST(FastShape, SamplesOfANormalAreThoseOfItsPoint) {
     int lit = 0;
     for (std::uint32_t seed = 0; seed < kFastFiles; ++seed) {
         const FastFile loaded(random_fast(seed), true);

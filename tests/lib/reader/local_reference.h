@@ -125,7 +125,7 @@ public:
         if (source.what == Source::tree)
             walk_from(source.root, cell, [&](const Curve& c) { return segment_of(c, square); });
         else find_blend(source, square, cell);
-        return density_at(cell, d);
+        return pdf_in_cell(cell, d);
     }
 
     /// SPEC.md §10.2

@@ -72,7 +72,7 @@ TEST_F(Open, aBrokenFileIsNamed) {
     EXPECT_NE(message.find("broken.acdf: truncated: 300 bytes of"), std::string::npos) << message;
 }
 
-TEST_F(Open, whatLiesInItsPlaceIsNamed) {
+TEST_F(Open, otherKindsOfFilesAreNamed) {
     const auto message = [&](const std::string& content) {
         File file;
         const Status status = File::open(write("a.acdf", {content.begin(), content.end()}).c_str(), file);

@@ -18,7 +18,7 @@ constexpr float kInside[][3] = {{0, 0, 1},       {2, -1, 1}, {2, 1.5f, 1}, {1.1f
 
 /// Rounding may carry what is sampled at the border of a square to the next one: the pdf is that of the
 /// direction.
-TEST(Portals, SamplesHaveTheDensityThatIsFoundForThem) {
+TEST(Portals, SamplesHaveThePdfThatIsFoundForThem) {
     float share = 0.0f;
     for (int kind = 0; kind < 2; ++kind, share = 0.25f) {
         LocalSpec spec = windowed_local();
@@ -93,7 +93,7 @@ Histogram expected_of(const acdf::LocalEnvironmentView& view, const AcdfLocalPoi
 }
 
 /// Chi square over bins of enough samples; the pdf integrates to 1.
-TEST(Portals, DirectionsFallWhereTheDensitySays) {
+TEST(Portals, DirectionsFallWhereThePdfSays) {
     const LoadedLocal loaded(windowed_local());
     std::mt19937_64 random(9);
     const struct { int position, normal; } cases[] = {{0, 0}, {1, 1}, {3, 3}, {6, 0}};
@@ -146,7 +146,7 @@ TEST(Portals, NumbersAreClampedAndAtTheEndsSafe) {
 
 /// Cells without light stand between those with light, and at the ends: nothing is sampled there, whatever the
 /// numbers.
-TEST(Portals, NothingIsDrawnInCellsWithoutLight) {
+TEST(Portals, NothingIsSampledInCellsWithoutLight) {
     LocalSpec spec = windowed_local();
     for (PortalMapSpec& map : spec.portals->maps) map.light = {0, 0, 0, 0, 0, 5, 7, 0, 0, 0, 9, 0, 0, 0, 0, 0};
     const LoadedLocal loaded(spec);

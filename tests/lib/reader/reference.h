@@ -249,7 +249,7 @@ public:
         if (!square_of(d, square)) return 0.0;
         const Cell cell = find(square);
         if (found) *found = cell;
-        return density_at(cell, d);
+        return pdf_in_cell(cell, d);
     }
 
     // SPEC.md §6.6
@@ -321,7 +321,7 @@ public:
         return column >= columns ? 0.0 : column;
     }
 
-    double density_at(const Cell& cell, const double (&d)[3]) const {
+    double pdf_in_cell(const Cell& cell, const double (&d)[3]) const {
         if (cell.p == 0.0) return 0.0;
         double t[2];
         fractions(cell, d, t);

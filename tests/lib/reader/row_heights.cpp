@@ -35,7 +35,7 @@ std::vector<Direction> row_directions(std::size_t count) {
     return out;
 }
 
-TEST(RowHeights, TellSquaresAsDoublesDo) {
+TEST(RowHeights, FindSquaresAsDoublesDo) {
     const std::vector<Direction> directions = row_directions(static_cast<std::size_t>(acdf_test::repeated(400000)));
     const std::uint32_t grids[][2] = {{1, 1}, {3, 2}, {1024, 512}, {1000, 333}, {65536, 65536}};
     for (const auto& grid : grids) {

@@ -178,7 +178,7 @@ std::vector<double> box_probabilities(const TableView& view, const std::vector<s
     return out;
 }
 
-TEST(TableView, DensityIntegratesToOneAndSamplesFollowIt) {
+TEST(TableView, PdfIntegratesToOneAndSamplesFollowIt) {
     constexpr int kTests = 12, kSamples = 60000;
     for (std::uint64_t seed = 0; seed < kTests; ++seed) {
         SCOPED_TRACE(seed);

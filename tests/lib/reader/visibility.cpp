@@ -32,7 +32,7 @@ void for_each_direction(const Visit& visit) {
         }
 }
 
-TEST(Visibility, DensitiesIntegrateToOne) {
+TEST(Visibility, PdfsIntegrateToOne) {
     float share = 0.0f;
     for (LocalSpec spec : {visibility_local(), regional_local(), regional_local()}) {
         spec.cosine_share = share;
@@ -50,7 +50,7 @@ TEST(Visibility, DensitiesIntegrateToOne) {
     }
 }
 
-TEST(Visibility, SamplesHaveTheDensityThatIsFoundForThem) {
+TEST(Visibility, SamplesHaveThePdfThatIsFoundForThem) {
     for (const LocalSpec& spec : {visibility_local(), regional_local()}) {
         const LoadedLocal loaded(spec);
         std::mt19937_64 random(5);
@@ -68,7 +68,7 @@ TEST(Visibility, SamplesHaveTheDensityThatIsFoundForThem) {
 }
 
 /// The frequency of directions in octants against the integral of the pdf there.
-TEST(Visibility, DirectionsFallWhereTheDensitySays) {
+TEST(Visibility, DirectionsFallWhereThePdfSays) {
     for (const LocalSpec& spec : {visibility_local(), regional_local()}) {
         const LoadedLocal loaded(spec);
         const AcdfLocalPoint point = loaded.view().at(kPositions[3], kNormals[1]);

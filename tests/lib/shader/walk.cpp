@@ -184,7 +184,7 @@ WalkCounted compare_walk(const WalkedFile& file, int normals, int each) {
     return counted;
 }
 
-TEST(ShaderWalk, AnswersAsTheReaderOnGoldenFiles) {
+TEST(ShaderTraversal, AnswersAsTheReaderOnGoldenFiles) {
     int files = 0;
     each_golden_file([&](std::vector<std::uint8_t> bytes) {
         const WalkedFile file(std::move(bytes));
@@ -196,7 +196,7 @@ TEST(ShaderWalk, AnswersAsTheReaderOnGoldenFiles) {
 }
 
 // All that the format has for them but tilts: on both grids of directions and of normals.
-TEST(ShaderWalk, AnswersAsTheReaderOnRandomLocalFiles) {
+TEST(ShaderTraversal, AnswersAsTheReaderOnRandomLocalFiles) {
     WalkCounted all;
     int files = 0;
     for (std::uint32_t seed = 0; seed < 160; seed += kStep) {
@@ -216,7 +216,7 @@ TEST(ShaderWalk, AnswersAsTheReaderOnRandomLocalFiles) {
     EXPECT_LT(all.other_normals, 2e-2 * all.normals);
 }
 
-TEST(ShaderWalk, AnswersAsTheReaderOnRandomFilesOfTheFastShape) {
+TEST(ShaderTraversal, AnswersAsTheReaderOnRandomFilesOfTheFastShape) {
     WalkCounted all;
     for (std::uint32_t seed = 0; seed < 60; seed += kStep) {
         SCOPED_TRACE(seed);
@@ -231,7 +231,7 @@ TEST(ShaderWalk, AnswersAsTheReaderOnRandomFilesOfTheFastShape) {
     EXPECT_LT(all.other_normals, 2e-2 * all.normals);
 }
 
-TEST(ShaderWalk, AnswersAsTheReaderOnRandomEnvironments) {
+TEST(ShaderTraversal, AnswersAsTheReaderOnRandomEnvironments) {
     WalkCounted all;
     int files = 0;
     for (std::uint32_t seed = 0; seed < 80; ++seed) {
@@ -250,7 +250,7 @@ TEST(ShaderWalk, AnswersAsTheReaderOnRandomEnvironments) {
     EXPECT_LT(all.rounded, 1e-4 * all.draws);
 }
 
-TEST(ShaderWalk, NothingServesWhatIsNoNormal) {
+TEST(ShaderTraversal, NothingServesWhatIsNoNormal) {
     RandomOptions options;
     options.tilts = false;
     const WalkedFile file(RandomLocal(3, options).make().encode());
@@ -268,7 +268,7 @@ TEST(ShaderWalk, NothingServesWhatIsNoNormal) {
     }
 }
 
-TEST(ShaderWalk, TiltedCellsAreRefusedWithAReason) {
+TEST(ShaderTraversal, TiltedCellsAreRefusedWithAReason) {
     std::ifstream in(ACDF_TEST_DIR "/golden/v1.0/tilted.acdf", std::ios::binary);
     const WalkedFile file({std::istreambuf_iterator<char>(in), {}});
     EXPECT_EQ(file.status.code, acdf::ErrorCode::unsupported);

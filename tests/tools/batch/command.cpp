@@ -33,7 +33,7 @@ TEST_F(BatchCommand, MakesTheSameBytesAsTheSubcommands) {
     }
 }
 
-TEST_F(BatchCommand, SkipsWhatIsUpToDateAndTellsWhyTheRestIsNot) {
+TEST_F(BatchCommand, SkipsWhatIsUpToDateAndSaysWhyTheRestIsNot) {
     write_small_probes(probes, 6);
     const std::vector<std::string> run = {probes, "--set", "env.cells=40"};
     EXPECT_EQ(report(run)["done"], 6);
@@ -164,7 +164,7 @@ TEST_F(BatchCommand, SettingsForPatternsOfSources) {
         EXPECT_EQ(batch({probes, "--set", wrong}).code, 2) << wrong;
 }
 
-TEST_F(BatchCommand, TellsWhatToWriteForSourcesThatItCannotTell) {
+TEST_F(BatchCommand, SaysWhatToWriteForSourcesOfUnknownKind) {
     fs::create_directories(probes);
     std::ofstream square(probes + "/disc.pfm", std::ios::binary); // black corners: an angular map or a mirror ball
     square << "PF\n32 32\n-1.0\n";

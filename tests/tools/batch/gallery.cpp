@@ -67,7 +67,7 @@ TEST(BatchGallery, ReplacesNoPageOfOthers) {
     EXPECT_NE(in_the_way.err.find("gallery.html: is a folder"), std::string::npos) << in_the_way.err;
 }
 
-TEST(BatchGallery, AReportIsToldWhereThePageCannotBeWritten) {
+TEST(BatchGallery, AReportIsPrintedWhereThePageCannotBeWritten) {
     const Folder folder;
     write_small_probe(folder / "a.pfm", 1);
     std::filesystem::create_directory(folder / "out");

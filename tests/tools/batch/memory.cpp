@@ -144,7 +144,7 @@ void write_noise_table(const std::string& path) {
     write_text(path, bytes);
 }
 
-TEST_F(BatchMemory, TablesTakeWhatTheirPageTells) {
+TEST_F(BatchMemory, TablesTakeTheMemoryOfTheirPage) {
     if (acdf_test::kSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
     const std::string table = folder / "noise.npy";
     write_noise_table(table);

@@ -28,7 +28,7 @@ std::string error_of(const std::string& line) {
     return manifest.errors[0].what;
 }
 
-TEST(BatchManifest, TellsAllThatALineSays) {
+TEST(BatchManifest, ReadsAllMembersOfALine) {
     const Manifest manifest =
         parse_manifest("{\"source\": \"sky.exr\", \"kind\": \"local\", \"output\": \"a/b.acdf\", "
                        "\"options\": {\"budget\": \"64KiB\", \"no-sharing\": true, \"scene-rgb\": false, \"eps\": "
@@ -48,7 +48,7 @@ TEST(BatchManifest, TellsAllThatALineSays) {
     EXPECT_EQ(*manifest.jobs[1].options, (std::vector<std::string>{"--budget", "2MB"}));
 }
 
-TEST(BatchManifest, TellsWhatIsWrongWithALine) {
+TEST(BatchManifest, ReportsWhatIsWrongWithALine) {
     const std::pair<const char*, const char*> cases[] = {
         {"{\"source\": \"a\", \"sauce\": 1}", "unknown key 'sauce'"},
         {"{\"source\": 7}", "'source' must be a string, not number"},

@@ -33,7 +33,7 @@ TEST_F(BatchCommand, RefusesManifestsBeforeAnythingStarts) {
     expect_refused("\n", "has no jobs");
 }
 
-TEST_F(BatchCommand, TellsTheOneWrongLineOfHundredThousand) {
+TEST_F(BatchCommand, ReportsTheOneWrongLineOfHundredThousand) {
     fs::create_directory(probes);
     write_small_probe(probes + "/a.pfm", 1);
     std::string text;
@@ -108,7 +108,7 @@ TEST_F(BatchCommand, AFolderThatCannotBeMadeIsNamed) {
         }
 }
 
-TEST_F(BatchCommand, WrongUsageIsTold) {
+TEST_F(BatchCommand, WrongUsageIsReported) {
     write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
     for (const std::vector<std::string>& wrong : {std::vector<std::string>{probes, "--shard", "0/3"},
                                                   {probes, "--shard", "slurm"},

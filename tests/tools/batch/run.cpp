@@ -110,7 +110,7 @@ TEST_F(BatchRun, RunsAsManyAtOnceAsItMay) {
     EXPECT_EQ(stage.most_running, 1u);
 }
 
-TEST_F(BatchRun, TellsEachEndOnceAndGoesOnPastFailures) {
+TEST_F(BatchRun, ReportsEachEndOnceAndGoesOnPastFailures) {
     add("job", 1);
     add("bad job", 2);
     add("too large", 1001);

@@ -12,12 +12,12 @@ namespace acdf::test {
 namespace {
 
 using tools::Colour;
-using tools::DensityRange;
+using tools::PdfRange;
 
-std::vector<Colour> colours_of(const std::vector<float>& densities, const DensityRange& range) {
-    const tools::DensityImage image{{build::Layout::latlong, static_cast<int>(densities.size()), 1}, densities};
+std::vector<Colour> colours_of(const std::vector<float>& pdfs, const PdfRange& range) {
+    const tools::PdfImage image{{build::Layout::latlong, static_cast<int>(pdfs.size()), 1}, pdfs};
     const std::vector<float> rgb = tools::false_colour(image, range).values;
-    std::vector<Colour> out(densities.size());
+    std::vector<Colour> out(pdfs.size());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]};
     return out;
 }
@@ -95,7 +95,7 @@ TEST(PlotColours, GrowLighterToYellowAndDarkerToRed) {
 }
 
 TEST(PlotColours, OfRatiosAreLightInTheMiddleAndEquallyDarkAtTheEnds) {
-    const tools::DensityImage image{{build::Layout::latlong, 3, 1}, {0.1f, 1.0f, 10.0f}};
+    const tools::PdfImage image{{build::Layout::latlong, 3, 1}, {0.1f, 1.0f, 10.0f}};
     const std::vector<float> rgb = tools::false_colour(image, {0.1, 10.0}, tools::ColourMap::diverging).values;
     const auto at = [&](std::size_t i) { return oklab({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]})[0]; };
     EXPECT_NEAR(at(0), at(2), 0.05);
@@ -104,7 +104,7 @@ TEST(PlotColours, OfRatiosAreLightInTheMiddleAndEquallyDarkAtTheEnds) {
     EXPECT_GT(rgb[6], rgb[8]); // red
 }
 
-TEST(PlotColours, FollowTheLogarithmOfTheDensity) {
+TEST(PlotColours, FollowTheLogarithmOfThePdf) {
     const auto a = colours_of({1e-1f}, {1e-3, 1e1}), b = colours_of({1e2f}, {1.0, 1e4});
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(a[0][c], b[0][c], 1e-4f);
 }
@@ -116,7 +116,7 @@ TEST(PlotColours, OutsideOfTheRangeAreThoseOfItsEnds) {
     EXPECT_NE(c[1], c[2]);
 }
 
-TEST(PlotColours, ZeroIsGreyUnlikeAnyDensityAndOutsideIsBackground) {
+TEST(PlotColours, ZeroIsGreyUnlikeAnyPdfAndOutsideIsBackground) {
     const auto special = colours_of({0.0f, tools::shows_nothing}, {1e-3, 1e2});
     EXPECT_EQ(special[0], tools::zero_colour);
     EXPECT_EQ(special[1], tools::background);

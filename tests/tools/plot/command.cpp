@@ -55,7 +55,7 @@ TEST_F(PlotCommand, WritesAPictureOfTheSizeAskedFor) {
     EXPECT_EQ(load_image(png).width, 512);
 }
 
-TEST_F(PlotCommand, ExrHoldsTheReadersDensities) {
+TEST_F(PlotCommand, ExrHoldsTheReadersPdfs) {
     ASSERT_EQ(plot({file, "-o", exr, "--width", "50", "--projection", "latlong"}).code, 0);
     const StoredEnvironment stored(small_environment());
     LoadedImage image = load_image(exr);
@@ -80,7 +80,7 @@ TEST_F(PlotCommand, ExrHoldsTheReadersDensities) {
         }
 }
 
-TEST_F(PlotCommand, ExrDependsOnNothingButTheDensity) {
+TEST_F(PlotCommand, ExrDependsOnNothingButThePdf) {
     ASSERT_EQ(plot({file, "-o", exr, "--width", "32"}).code, 0);
     EXPECT_EQ(load_image(exr).date, "");
     const std::string first = read_text(exr);
@@ -106,7 +106,7 @@ TEST_F(PlotCommand, CountsTheCellsOfSharedCurvesWithoutVisitingThem) {
     EXPECT_NE(note.find("3600000000 cells"), std::string::npos) << note;
 }
 
-TEST_F(PlotCommand, OfAProbeShowsItsOwnDensity) {
+TEST_F(PlotCommand, OfAProbeShowsItsOwnPdf) {
     std::vector<float> rgb(16 * 8 * 3);
     for (std::size_t i = 0; i < 16 * 8; ++i)
         for (std::size_t c = 0; c < 3; ++c) rgb[3 * i + c] = static_cast<float>(1 + (i * 37) % 23);
@@ -125,7 +125,7 @@ TEST_F(PlotCommand, OfAProbeShowsItsOwnDensity) {
         }
 }
 
-TEST_F(PlotCommand, DrawsKnotsUnlessToldNotTo) {
+TEST_F(PlotCommand, ShowsKnotsUnlessSwitchedOff) {
     ASSERT_EQ(plot({file, "-o", png, "--width", "128", "--no-legend", "--no-knots"}).code, 0);
     const LoadedImage plain = load_image(png);
     ASSERT_EQ(plot({file, "-o", png, "-f", "--width", "128", "--no-legend"}).code, 0);

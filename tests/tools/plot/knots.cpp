@@ -2,7 +2,7 @@
 #include "tools/plot/knots.h"
 
 #include "tests/tools/plot/files.h"
-#include "tools/plot/density.h"
+#include "tools/plot/pdf_image.h"
 
 #include "build/accuracy/cells.h"
 

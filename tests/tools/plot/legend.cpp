@@ -12,10 +12,10 @@ namespace acdf::test {
 namespace {
 
 using tools::Box;
-using tools::DensityRange;
 using tools::LegendLayout;
+using tools::PdfRange;
 
-constexpr DensityRange range{1e-3, 1e2};
+constexpr PdfRange range{1e-3, 1e2};
 
 struct Drawn {
     LegendLayout layout;
@@ -66,14 +66,14 @@ TEST(PlotLegend, TicksAreAtThePowersOfTenAndNowhereElse) {
     EXPECT_EQ(rows, expected);
 }
 
-TEST(PlotLegend, BarShowsTheColourOfEachDensity) {
+TEST(PlotLegend, BarShowsTheColourOfEachPdf) {
     const Drawn drawn(400, 400, {}, false, "");
     const Box& bar = drawn.layout.bar;
-    for (const double density : {1e-3, 1e-2, 0.5, 3.0, 100.0}) {
-        const tools::DensityImage pixel{{build::Layout::latlong, 1, 1}, {static_cast<float>(density)}};
+    for (const double pdf : {1e-3, 1e-2, 0.5, 3.0, 100.0}) {
+        const tools::PdfImage pixel{{build::Layout::latlong, 1, 1}, {static_cast<float>(pdf)}};
         const std::vector<float> expected = tools::false_colour(pixel, range).values;
-        const float* shown = drawn.image.at(bar.x + bar.width / 2, drawn.layout.row_of(density, range));
-        for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], expected[c], 0.02f) << density;
+        const float* shown = drawn.image.at(bar.x + bar.width / 2, drawn.layout.row_of(pdf, range));
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], expected[c], 0.02f) << pdf;
     }
 }
 
@@ -84,7 +84,7 @@ TEST(PlotLegend, ExplainsZeroOnlyWhereItIsShown) {
     for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(rgb[c], tools::zero_colour[c]);
 }
 
-TEST(PlotLegend, TextLabelsEachDecadeAndStaysInItsPlace) {
+TEST(PlotLegend, TextLabelsEachDecadeAndStaysInsideItsBox) {
     const std::string font = tools::find_font();
     if (font.empty()) GTEST_SKIP() << "no font is installed";
     const std::string name(300, 'm');
@@ -127,8 +127,7 @@ TEST(PlotLegend, LongLabelsAreNotCutOff) {
     const std::string font = tools::find_font();
     if (font.empty()) GTEST_SKIP() << "no font is installed";
     for (const int height : {64, 200, 1024})
-        for (const tools::DensityRange labelled :
-             {tools::DensityRange{1e-14, 1e-10}, {2e-4, 9e-4}, {2e-14, 9e-14}}) {
+        for (const tools::PdfRange labelled : {tools::PdfRange{1e-14, 1e-10}, {2e-4, 9e-4}, {2e-14, 9e-14}}) {
             images::Picture picture(64, height);
             const LegendLayout l = tools::legend_layout(64, height);
             const images::Picture image = tools::add_legend(picture, {{}, labelled, false}, font);

@@ -8,12 +8,12 @@
 namespace acdf::test {
 namespace {
 
-using tools::DensityImage;
-using tools::DensityRange;
+using tools::PdfImage;
+using tools::PdfRange;
 
-DensityImage latlong_image(int width, float density) {
-    DensityImage image{tools::plot_map(build::Layout::latlong, width), {}};
-    image.density.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(width / 2), density);
+PdfImage latlong_image(int width, float pdf) {
+    PdfImage image{tools::plot_map(build::Layout::latlong, width), {}};
+    image.pdf.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(width / 2), pdf);
     return image;
 }
 
@@ -32,7 +32,7 @@ TEST(PlotRange, RefusesWhatIsNoRange) {
 }
 
 TEST(PlotRange, PositionIsLogarithmicAndClamped) {
-    const DensityRange range{1e-2, 1e2};
+    const PdfRange range{1e-2, 1e2};
     EXPECT_DOUBLE_EQ(range.position(1.0), 0.5);
     EXPECT_DOUBLE_EQ(range.position(10.0), 0.75);
     EXPECT_EQ(range.position(1e-9), 0.0);
@@ -40,64 +40,64 @@ TEST(PlotRange, PositionIsLogarithmicAndClamped) {
 }
 
 TEST(PlotRange, OfAConstantIsADecadeAroundIt) {
-    const DensityRange range = tools::automatic_range(latlong_image(64, 0.0796f));
+    const PdfRange range = tools::automatic_range(latlong_image(64, 0.0796f));
     EXPECT_EQ(range.low, 0.02);
     EXPECT_EQ(range.high, 0.5);
 }
 
 TEST(PlotRange, LeavesOutOutliersButNotASun) {
-    DensityImage image = latlong_image(256, 0.05f);
+    PdfImage image = latlong_image(256, 0.05f);
     for (int y = 0; y < 128; ++y)
-        for (int x = 0; x < 128; ++x) image.density[static_cast<std::size_t>(y * 256 + x)] = 0.003f;
-    image.density[64 * 256 + 10] = 1e-12f; // dark, and tiny
-    image.density[64 * 256 + 20] = 0.5f;   // brighter than all, but with next to no probability
-    DensityRange range = tools::automatic_range(image);
+        for (int x = 0; x < 128; ++x) image.pdf[static_cast<std::size_t>(y * 256 + x)] = 0.003f;
+    image.pdf[64 * 256 + 10] = 1e-12f; // dark, and tiny
+    image.pdf[64 * 256 + 20] = 0.5f;   // brighter than all, but with next to no probability
+    PdfRange range = tools::automatic_range(image);
     EXPECT_EQ(range.low, 0.002);
     EXPECT_GE(range.high, 0.05);
     EXPECT_LE(range.high, 0.1);
-    image.density[64 * 256 + 30] = 1500.0f; // a pixel of 6e-4 sr: most of the probability
+    image.pdf[64 * 256 + 30] = 1500.0f; // a pixel of 6e-4 sr: most of the probability
     range = tools::automatic_range(image);
     EXPECT_EQ(range.low, 0.002);
     EXPECT_EQ(range.high, 2000.0);
 }
 
 TEST(PlotRange, IgnoresZeroAndSpansAtMostEightDecades) {
-    DensityImage image = latlong_image(64, 1.0f);
-    for (std::size_t i = 0; i < 1024; ++i) image.density[i] = i % 2 ? 0.0f : 1e-20f;
-    const DensityRange range = tools::automatic_range(image);
+    PdfImage image = latlong_image(64, 1.0f);
+    for (std::size_t i = 0; i < 1024; ++i) image.pdf[i] = i % 2 ? 0.0f : 1e-20f;
+    const PdfRange range = tools::automatic_range(image);
     EXPECT_GE(range.high, 1.0);
     EXPECT_GE(range.low, 1e-9);
     EXPECT_LE(range.low, 1e-7);
 }
 
 TEST(PlotRange, OfNothingIsStillARange) {
-    const DensityRange range = tools::automatic_range(latlong_image(16, 0.0f));
+    const PdfRange range = tools::automatic_range(latlong_image(16, 0.0f));
     EXPECT_LT(range.low, range.high);
     EXPECT_GT(range.low, 0.0);
 }
 
-std::vector<double> densities(const DensityRange& range, bool major) {
+std::vector<double> pdfs(const PdfRange& range, bool major) {
     std::vector<double> out;
     for (const tools::Tick& tick : tools::ticks(range))
-        if (!major || tools::is_major(tick, range)) out.push_back(tick.density());
+        if (!major || tools::is_major(tick, range)) out.push_back(tick.pdf());
     return out;
 }
 
-TEST(PlotRange, TicksAreTheRoundDensitiesInside) {
-    EXPECT_EQ(densities({0.5, 20.0}, false),
+TEST(PlotRange, TicksAreTheRoundPdfsInside) {
+    EXPECT_EQ(pdfs({0.5, 20.0}, false),
               (std::vector<double>{0.5, 0.6, 0.7, 0.8, 0.9, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 20}));
-    EXPECT_EQ(densities({2e-7, 4e-7}, false), (std::vector<double>{2e-7, 3e-7, 4e-7}));
+    EXPECT_EQ(pdfs({2e-7, 4e-7}, false), (std::vector<double>{2e-7, 3e-7, 4e-7}));
 }
 
 TEST(PlotRange, MajorTicksAreThePowersOfTen) {
-    EXPECT_EQ(densities({1e-3, 100.0}, true), (std::vector<double>{1e-3, 1e-2, 1e-1, 1, 10, 100}));
-    EXPECT_EQ(densities({2e-3, 99.0}, true), (std::vector<double>{1e-2, 1e-1, 1, 10}));
+    EXPECT_EQ(pdfs({1e-3, 100.0}, true), (std::vector<double>{1e-3, 1e-2, 1e-1, 1, 10, 100}));
+    EXPECT_EQ(pdfs({2e-3, 99.0}, true), (std::vector<double>{1e-2, 1e-1, 1, 10}));
 }
 
 TEST(PlotRange, MajorTicksOfAShortRangeAreMore) {
-    EXPECT_EQ(densities({0.2, 5.0}, true), (std::vector<double>{0.2, 0.5, 1, 2, 5}));
-    EXPECT_EQ(densities({3e-4, 6e-4}, true), (std::vector<double>{3e-4, 4e-4, 5e-4, 6e-4}));
-    EXPECT_EQ(densities({0.1, 10.0}, true), (std::vector<double>{0.1, 0.2, 0.5, 1, 2, 5, 10}));
+    EXPECT_EQ(pdfs({0.2, 5.0}, true), (std::vector<double>{0.2, 0.5, 1, 2, 5}));
+    EXPECT_EQ(pdfs({3e-4, 6e-4}, true), (std::vector<double>{3e-4, 4e-4, 5e-4, 6e-4}));
+    EXPECT_EQ(pdfs({0.1, 10.0}, true), (std::vector<double>{0.1, 0.2, 0.5, 1, 2, 5, 10}));
 }
 
 } // namespace

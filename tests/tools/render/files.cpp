@@ -61,7 +61,7 @@ struct Mistake {
     const char* says;
 };
 
-TEST(RenderSceneFile, MistakesAreNamedWithTheirPlace) {
+TEST(RenderSceneFile, MistakesAreNamedWithTheirKey) {
     const std::vector<Mistake> mistakes{
         {"/camera/fov", 171, "camera.fov: is 171, not from 0.01 to 170"},
         {"/camera/fov", "wide", "camera.fov: is string, not a number"},

@@ -54,7 +54,7 @@ struct MeshFolder : SceneFolder {
     }
 };
 
-TEST(MeshVisibility, AreDrawnFromInPictures) {
+TEST(MeshVisibility, AreSampledInPictures) {
     ACDF_NOT_SANITIZED();
     MeshFolder folder;
     const Result made = folder.local("room.acdf", {"--scene", folder / "room.obj", "--visibility", "--json"});

@@ -33,7 +33,7 @@ struct Opened {
     AcdfLocal data() const { return file.local().data(); }
 };
 
-TEST(MeshPortals, AreToldByCornersAndByAScene) {
+TEST(MeshPortals, AreGivenByCornersAndByAScene) {
     PortalFolder folder;
     const Result one = folder.local("one.acdf", {"--visibility", "--portal", kOpening}),
                  two = folder.local("two.acdf", {"--visibility", "--portals", folder / "scene.json"});
@@ -98,7 +98,7 @@ TEST(MeshPortals, ThoseThatDoNotFitTheirWindowsAreRemarkedOn) {
     EXPECT_NE(y_up.err.find("through 50 % of it"), std::string::npos) << y_up.err;
 }
 
-TEST(MeshPortals, AreDrawnThroughInPictures) {
+TEST(MeshPortals, AreSampledInPictures) {
     PortalFolder folder;
     const Result result = run_acdf({"render", "--scene", folder / "scene.json", "--data", folder.data(), "-o",
                                     folder / "out", "--seeds", "40", "--no-timing", "--json", "--no-reference",

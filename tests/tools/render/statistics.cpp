@@ -52,7 +52,7 @@ struct Ball {
     }
 };
 
-TEST(RenderStatistics, TellTheVarianceOfAnEstimateWithoutBias) {
+TEST(RenderStatistics, EstimateTheVarianceOfAnEstimateWithoutBias) {
     const Ball ball;
     const Uniform estimator;
     RenderOptions options;

@@ -175,7 +175,7 @@ TEST(SweepAdvice, SaysWhatPicturesHave) {
     EXPECT_EQ(noise_ratio_text(1.004), "the same noise as");
 }
 
-TEST(SweepAdvice, TellsWhichBaselinesWin) {
+TEST(SweepAdvice, NamesTheBaselinesThatWin) {
     const Sweep sweep = made_up();
     const Advice advice = advise(sweep);
     std::map<std::string, Verdict> verdicts;
@@ -359,7 +359,7 @@ TEST(SweepRows, OfATinyProbeAreWhatTheFilesHave) {
     expect_consistent(sweep);
 }
 
-TEST(SweepRows, WhatIsOutOfReachIsTold) {
+TEST(SweepRows, GoalsOutOfReachAreNoted) {
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
     SweepOptions options = quick();
     options.budgets = {100, 2500};

@@ -47,7 +47,7 @@ TEST(SweepRows, LocalFilesBesideTheirBaselines) {
 }
 
 // A set of a single point is uniform: then sampled variances are those of the sums.
-TEST(SweepRows, SobolOfOneSampleIsWhatTheSumsTell) {
+TEST(SweepRows, SobolOfOneSampleIsThatOfTheSums) {
     SweepOptions options = small_sweep();
     options.visible.spp = 1;
     options.seeds = 2000;

@@ -23,15 +23,15 @@ TEST(SweepSurface, AgreesWithTheClosedFormsOfBaselines) {
     const std::vector<build::Normal> normals = build::random_normals(5);
     const measure::LocalFullCdf full(target);
     const auto sampler = measure::full_cdf_sampler(target);
-    const std::vector<float> density = texel_pdfs(target, *sampler);
-    const SurfaceVariances got = summary(point_variances(target, density, in_the_open(normals)), Scale::own);
+    const std::vector<float> pdf = texel_pdfs(target, *sampler);
+    const SurfaceVariances got = summary(point_variances(target, pdf, in_the_open(normals)), Scale::own);
     std::vector<double> each;
     for (const build::Normal& n : normals) each.push_back(full.relative_variance(n.data()));
     const Lit expected = spread_of(each);
     EXPECT_NEAR(got.alone.mean, expected.mean, 1e-5 * expected.mean);
     EXPECT_NEAR(got.alone.median, expected.median, 1e-5 * expected.median);
     EXPECT_NEAR(got.alone.worst, expected.worst, 1e-5 * expected.worst);
-    const std::vector<float> nothing(density.size(), 0.0f);
+    const std::vector<float> nothing(pdf.size(), 0.0f);
     const SurfaceVariances dark = summary(point_variances(target, nothing, in_the_open({normals[0]})), Scale::own);
     EXPECT_TRUE(std::isinf(dark.alone.mean));
     // All that is sampled is the cosine's: half as many samples of it as are counted.
@@ -46,11 +46,11 @@ TEST(SweepSurface, AgreesWithTheClosedFormsOfBaselines) {
 TEST(SweepSurface, WhatIsHiddenDoesNotCount) {
     const compress::Target target = acdf_test::noise_target(48, 24, 5, 1.0, 0.1);
     const auto sampler = measure::full_cdf_sampler(target);
-    const std::vector<float> density = texel_pdfs(target, *sampler);
+    const std::vector<float> pdf = texel_pdfs(target, *sampler);
     SurfacePoint point;
-    const PointVariance open = point_variances(target, density, {point}).front();
-    point.hidden.assign(density.size(), false);
-    const PointVariance same = point_variances(target, density, {point}).front();
+    const PointVariance open = point_variances(target, pdf, {point}).front();
+    point.hidden.assign(pdf.size(), false);
+    const PointVariance same = point_variances(target, pdf, {point}).front();
     EXPECT_EQ(open.alone, same.alone);
     EXPECT_EQ(open.partner, same.partner);
     compress::Target dark = target;
@@ -58,8 +58,8 @@ TEST(SweepSurface, WhatIsHiddenDoesNotCount) {
         dark.values[i] = 0.0f;
         point.hidden[i] = true;
     }
-    const PointVariance hidden = point_variances(target, density, {point}).front();
-    const PointVariance without = point_variances(dark, density, {{}}).front();
+    const PointVariance hidden = point_variances(target, pdf, {point}).front();
+    const PointVariance without = point_variances(dark, pdf, {{}}).front();
     EXPECT_LT(hidden.irradiance, 0.8 * open.irradiance);
     EXPECT_NEAR(hidden.irradiance, without.irradiance, 1e-12 * open.irradiance);
     EXPECT_NEAR(hidden.alone, without.alone, 1e-9 * open.alone);
@@ -108,7 +108,7 @@ TEST(SweepSurface, TheOccludersAreThoseOfTheDemoScene) {
 }
 
 // A set of a single point is uniform: then sampled variances are those of the sums.
-TEST(SweepSurface, DrawnVariancesAreThoseOfTheSums) {
+TEST(SweepSurface, SampledVariancesAreThoseOfTheSums) {
     const compress::Target target = acdf_test::noise_target(48, 24, 5, 1.0, 0.1);
     const auto sampler = measure::full_cdf_sampler(target);
     const std::vector<SurfacePoint> points = behind_occluders(target, 12);

@@ -144,7 +144,7 @@ TEST(MeasureEnvironment, SupportViolationsMakeItInfinite) {
     EXPECT_TRUE(std::isfinite(a.rms_pdf_error));
 }
 
-TEST(MeasureEnvironment, DarkTexelsWithoutDensityAreNoViolation) {
+TEST(MeasureEnvironment, DarkTexelsWithoutPdfAreNoViolation) {
     const Target target =
         acdf_test::texel_target(4, 3, [](std::uint32_t c, std::uint32_t) { return c < 2 ? 2.0 : 0.0; });
     const compress::Cascade dark_right{{{0, {2}, {1.0, 0.0}, {}, {}}}, {0}};

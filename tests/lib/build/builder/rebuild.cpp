@@ -409,7 +409,7 @@ TEST(Rebuild, BlackMaps) {
     EXPECT_EQ(even.view().total(), sky.view().total());
 }
 
-TEST(Rebuild, NoLightIsWithoutADensity) {
+TEST(Rebuild, NoLightIsWithoutAPdf) {
     for (const AcdfFilter filter : {ACDF_FILTER_NEAREST, ACDF_FILTER_BILINEAR}) {
         const Case of{64, 32, filter};
         std::vector<float> rgb(3 * 64 * 32, 1e-30f);

@@ -92,7 +92,7 @@ TEST(FitCurveUniform, SpacesKnotsEvenly) {
     EXPECT_EQ(fit_curve_uniform(d, {100, 0.0}).segments(), 12u);
 }
 
-TEST(FitCurveCdf, PutsKnotsWhereAPiecewiseConstantDensityJumps) {
+TEST(FitCurveCdf, PutsKnotsWhereAPiecewiseConstantPdfJumps) {
     Distribution d{std::vector<double>(64, 1.0), std::vector<double>(64, 1.0)};
     std::fill(d.mass.begin() + 16, d.mass.begin() + 24, 16.0);
     std::fill(d.mass.begin() + 48, d.mass.end(), 4.0);
@@ -101,7 +101,7 @@ TEST(FitCurveCdf, PutsKnotsWhereAPiecewiseConstantDensityJumps) {
     EXPECT_TRUE(curve.tilts.empty());
 }
 
-TEST(FitCurvePdf, FollowsALinearDensityWithOneSegment) {
+TEST(FitCurvePdf, FollowsALinearPdfWithOneSegment) {
     // The pdf 1 + s (2t - 1) with s = 0.5 on 64 equal steps.
     Distribution d{{}, std::vector<double>(64, 1.0)};
     for (int i = 0; i < 64; ++i) d.mass.push_back(1.0 + 0.5 * (2.0 * (i + 0.5) / 64 - 1.0));
@@ -110,7 +110,7 @@ TEST(FitCurvePdf, FollowsALinearDensityWithOneSegment) {
     EXPECT_NEAR(curve.tilts[0], 0.5, 1e-3);
 }
 
-TEST(FitCurvePdf, NeedsFewerSegmentsThanCdfOnASmoothDensity) {
+TEST(FitCurvePdf, NeedsFewerSegmentsThanCdfOnASmoothPdf) {
     Distribution d{{}, std::vector<double>(256, 1.0)};
     for (int i = 0; i < 256; ++i) d.mass.push_back(1.0 + std::sin(acdf_test::kPi * (i + 0.5) / 256));
     const auto cost = [&](const Curve& curve) { // the integral of f^2 / p
@@ -173,7 +173,7 @@ TEST(BestTilt, IsZeroWithoutSlope) {
     EXPECT_EQ(best_tilt(dark, 0, 3), 0.0);
 }
 
-TEST(BestTilt, NeverReachesDensityZeroAtEitherEnd) {
+TEST(BestTilt, NeverReachesPdfZeroAtEitherEnd) {
     const Distribution step{{0, 0, 0, 0, 0, 0, 0, 1}, std::vector<double>(8, 1.0)};
     EXPECT_GT(best_tilt(step, 0, 8), 0.9);
     EXPECT_LT(best_tilt(step, 0, 8), 1.0);

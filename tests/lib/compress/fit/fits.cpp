@@ -11,7 +11,7 @@ using acdf_test::NamedTarget;
 
 class EveryFit : public ::testing::TestWithParam<NamedTarget> {};
 
-TEST_P(EveryFit, IsADensityThatCoversTheTarget) {
+TEST_P(EveryFit, IsAPdfThatCoversTheTarget) {
     for (const auto& fit : acdf_test::all_fits(14, 11, 130)) acdf_test::check_fit(GetParam().target, fit);
 }
 

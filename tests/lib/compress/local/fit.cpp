@@ -38,7 +38,7 @@ TEST(LocalFit, TheSameBytesForAnyNumberOfThreads) {
     }
 }
 
-TEST(LocalFit, CompressedFilesDrawTheSame) {
+TEST(LocalFit, CompressedFilesSampleTheSame) {
     LocalFileOptions options = sized(100, 3000);
     const LocalMap plain(suns_target(128, 64), octahedral_bins(4), options);
     options.codec = ACDF_CODEC_ZLIB;
@@ -199,7 +199,7 @@ TEST(LocalFit, RefusesWhatIsDarkAndGridsThatShare) {
     EXPECT_THROW(weigh(none, {{{0.0f, 0.0f, 0.0f}, 1.0}}), std::invalid_argument);
 }
 
-TEST(LocalFit, LightsAreSmallAndTold) {
+TEST(LocalFit, BrightTilesAreSmallAndStored) {
     const LocalMap map(suns_target(256, 128), octahedral_bins(5), sized(150, 3000));
     const AcdfLocal local = map.view().data();
     ASSERT_GT(local.bright_tile_count, 0u);

@@ -42,7 +42,7 @@ void expect_sizes(const Target& target, std::uint32_t count, double most_ratio, 
     }
 }
 
-TEST(TileSizer, TellsTheBytesThatEncodingMakes) {
+TEST(TileSizer, PredictsTheBytesThatEncodingMakes) {
     ACDF_NOT_SANITIZED();
     const double any = std::numeric_limits<double>::infinity();
     for (const WholeTree whole : {WholeTree::of_tiles, WholeTree::own}) {

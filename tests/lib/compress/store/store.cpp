@@ -143,7 +143,7 @@ TEST(Store, OneByteCountsFromTheLowEndOfTheRange) {
     EXPECT_EQ(Decoded(far_tree, child).position_code(), 1u);
 }
 
-TEST(Store, ASharedChildWhoseRangesBeginInDifferentPlaces) {
+TEST(Store, ASharedChildWhoseRangesBeginAtDifferentPositions) {
     // Left of column 3 the last curve refines rows 2 to 6, right of it rows 0 to 8.
     const Cascade cascade{{{0, {3}, {0.5, 0.5}, {1, 2}, {}},
                            {1, {2, 6}, {0.25, 0.5, 0.25}, {-1, 2, -1}, {}},

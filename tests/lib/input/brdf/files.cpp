@@ -104,7 +104,7 @@ TEST(InputBrdfNpy, FilesWithBadNumbers) {
     EXPECT_REFUSED(open_brdf(path), "cut short");
 }
 
-TEST(InputBrdfFiles, AreToldByWhatTheyHold) {
+TEST(InputBrdfFiles, AreRecognisedByWhatTheyHold) {
     const Folder folder;
     RglParts parts;
     parts.fill(1);

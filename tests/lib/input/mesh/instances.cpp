@@ -50,7 +50,7 @@ TEST(Instances, AreReadInTheOrderOfTheirMeshes) {
               (std::vector<std::string>{folder / "a.instances", folder / "a tree.obj", folder / "rock.ply"}));
 }
 
-TEST(Instances, TrianglesStandWhereTheListTells) {
+TEST(Instances, TrianglesStandWhereTheListPutsThem) {
     const Folder folder;
     write_text(folder / "t.obj", kTetrahedron);
     write_text(folder / "t.instances", "1 0 0 0 0 1 0 0 0 0 1 0 t.obj\n"    // as it is

@@ -31,7 +31,7 @@ Triangles soup(int count) {
     return out;
 }
 
-TEST(TriangleTrees, FindWhatAllTrianglesTell) {
+TEST(TriangleTrees, FindTheHitsOfAllTriangles) {
     const Triangles triangles = soup(1500);
     const TriangleTree tree(triangles);
     std::vector<Triangles> each;
@@ -72,7 +72,7 @@ TEST(TriangleTrees, FindWhatAllTrianglesTell) {
     EXPECT_LT(met, 340);
 }
 
-TEST(TriangleTrees, OfManyTrianglesInOnePlace) {
+TEST(TriangleTrees, OfManyTrianglesAtOnePosition) {
     Triangles same;
     for (int i = 0; i < 300; ++i)
         for (const std::array<float, 3>& p : {std::array<float, 3>{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})

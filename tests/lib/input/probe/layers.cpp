@@ -193,7 +193,7 @@ TEST(Layers, ThePartOfTheLightIsRead) {
 }
 
 // A layer that nobody chose is reported, unless it is the image itself; of two that are as good none is.
-TEST(Layers, OfAFileAreTold) {
+TEST(Layers, OfAFileAreReported) {
     const Folder folder;
     OIIO::ImageSpec spec(8, 4, 6, OIIO::TypeDesc::FLOAT);
     std::vector<float> pixels;

@@ -43,7 +43,7 @@ TEST(AliasChoices, StandForMassesInAll) {
     }
 }
 
-TEST(AliasChoices, OfOneMassThatIsAllNoOtherIsDrawn) {
+TEST(AliasChoices, OfOneMassThatIsAllNoOtherIsSampled) {
     const std::vector<AliasChoice> choices = alias_choices({0.0, 0.0, 4.0, 0.0});
     for (std::size_t i = 0; i < choices.size(); ++i) {
         EXPECT_EQ(choices[i].keep, i == 2 ? 1.0f : 0.0f) << i;

@@ -58,7 +58,7 @@ TEST(MeasureBrdfBaselines, VariancesAreTheSameHoweverLightIsLookedUp) {
     }
 }
 
-TEST(MeasureBrdfBaselines, CosineSamplesAsItsDensity) {
+TEST(MeasureBrdfBaselines, CosineSamplesAsItsPdf) {
     for (const double c : cosines) expect_samples_as_its_pdf(CosineSampler{}, view_at(c), at("cosine", c));
     const double wo[3] = {0.0, 0.0, 1.0}, u[2] = {0.25, 0.36};
     const BrdfSample s = CosineSampler::sample(wo, u);
@@ -67,7 +67,7 @@ TEST(MeasureBrdfBaselines, CosineSamplesAsItsDensity) {
     EXPECT_NEAR(s.pdf, 0.8 / acdf_test::kPi, 1e-15);
 }
 
-TEST(MeasureBrdfBaselines, GgxSamplesAsItsDensity) {
+TEST(MeasureBrdfBaselines, GgxSamplesAsItsPdf) {
     for (const double c : cosines) {
         expect_samples_as_its_pdf(GgxSampler(0.1), view_at(c), at("0.1", c), 48);
         expect_samples_as_its_pdf(GgxSampler(0.8), view_at(c), at("0.8", c));
@@ -106,7 +106,7 @@ TEST(MeasureBrdfBaselines, TheBestGgxOfAGgxIsNearItself) {
     }
 }
 
-TEST(MeasureBrdfBaselines, RglSamplesAsItsDensity) {
+TEST(MeasureBrdfBaselines, RglSamplesAsItsPdf) {
     for (const bool isotropic : {true, false}) {
         acdf::test::RglParts parts;
         if (!isotropic) parts.phi = {-3.1415927f, -1.0f, 1.5f, 3.1415927f};
@@ -159,7 +159,7 @@ TEST(MeasureBrdfBaselines, RglOfRealMaterials) {
 
 constexpr BrdfTableSize small = {12, 8, 64, 16};
 
-TEST(MeasureBrdfBaselines, TablesSampleAsTheirDensity) {
+TEST(MeasureBrdfBaselines, TablesSampleAsTheirPdf) {
     const auto iso = acdf::input::model_brdf("ggx:alpha=0.3"), aniso = acdf::input::model_brdf("ggx:alpha=0.2,0.5");
     for (const BrdfTableKind kind : {BrdfTableKind::centre, BrdfTableKind::mean}) {
         const TabulatedBrdf a(light_of(*iso), true, kind, small), b(light_of(*aniso), false, kind, small);

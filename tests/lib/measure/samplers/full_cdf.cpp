@@ -74,7 +74,7 @@ TEST(FullCdf, FillsATexelEvenly) {
     EXPECT_GT(acdf_test::chi_square(observed, std::vector<double>(33 * 33, 1.0 / (33 * 33))).p_value, 0.001);
 }
 
-TEST(FullCdf, LightAtTheEndsOfFloatsIsDrawnAsAnyOther) {
+TEST(FullCdf, LightAtTheEndsOfFloatsIsSampledAsAnyOther) {
     for (const double light : {1.4e-45, 1e-40, 1.0, 3.4e38}) {
         const Target one = acdf_test::texel_target(
             32, 16, [&](std::uint32_t c, std::uint32_t r) { return c == 3 && r == 3 ? light : 0.0; });

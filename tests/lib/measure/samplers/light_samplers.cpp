@@ -89,7 +89,7 @@ std::vector<double> densities(const LightSampler& sampler, const Target& t) {
     return out;
 }
 
-TEST(TexelSamplersOf, FullTablesHaveTheDensityOfTheLight) {
+TEST(TexelSamplersOf, FullTablesHaveThePdfOfTheLight) {
     for (const NamedTarget& each : irradiance_targets()) {
         const Target& t = each.target;
         const double flux = acdf::compress::integral(t);
@@ -112,8 +112,8 @@ TEST(TexelSamplersOf, CompensationSubtractsTheMean) {
     });
     for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(p[i], std::max(0.0, t.values[i] - mean) / sum, 1e-6);
     const Target flat = sphere_target(16, 8, [](double, double) { return 2.0; });
-    for (const double uniform_density : densities(*compensated_sampler(flat), flat))
-        EXPECT_NEAR(uniform_density, 1.0 / (4.0 * kPi), 1e-6);
+    for (const double uniform_pdf : densities(*compensated_sampler(flat), flat))
+        EXPECT_NEAR(uniform_pdf, 1.0 / (4.0 * kPi), 1e-6);
 }
 
 TEST(TexelSamplersOf, DownsampledCellsAreMeansOverTheirTexels) {

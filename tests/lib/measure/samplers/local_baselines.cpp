@@ -24,7 +24,7 @@ protected:
     const Target& target() const { return GetParam().target; }
 };
 
-TEST_P(LocalBaseline, FullCdfDensityIsThatOfItsSamples) {
+TEST_P(LocalBaseline, FullCdfPdfIsThatOfItsSamples) {
     const Target& t = target();
     const LocalFullCdf baseline(t);
     double sum = 0.0;
@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(Synthetic, LocalBaseline, ::testing::ValuesIn(irradianc
 INSTANTIATE_TEST_SUITE_P(Synthetic, LocalBaselineVariance, ::testing::ValuesIn(fine_targets()),
                          [](const auto& info) { return info.param.name; });
 
-TEST(LocalBaselines, CosineDensityIsThatOfItsSamples) {
+TEST(LocalBaselines, CosinePdfIsThatOfItsSamples) {
     const Target grid = sphere_target(24, 12, smooth_sky);
     std::mt19937_64 random(9);
     for (const Normal& n : awkward_normals()) {

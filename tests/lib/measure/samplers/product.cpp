@@ -98,7 +98,7 @@ TEST(Product, SamplesByItsPdf) {
         }
 }
 
-TEST(Product, WarpedNumbersDrawByTheirDensity) {
+TEST(Product, WarpedNumbersSampleByTheirPdf) {
     const std::vector<Light>& all_lights = lights();
     const acdf::File& brdf = surfaces().front().made->file;
     SamplerCheck check;
@@ -219,7 +219,7 @@ TEST(Product, WeighingGroupsAndOpeningThemIsLessNoise) {
 }
 
 // A tile with much light that reaches above the horizon where its middle does not: it is sampled nonetheless.
-TEST(Product, LightAtTheHorizonIsDrawn) {
+TEST(Product, LightAtTheHorizonIsSampled) {
     const Light& light = lights()[4];
     const Surface& surface = surfaces()[0];
     const ShadingPoint point = points(8)[2]; // a sun is at its horizon

@@ -82,7 +82,7 @@ protected:
     }
 };
 
-TEST_P(Tiling, DensityIsThatOfSamples) {
+TEST_P(Tiling, PdfIsThatOfSamples) {
     const Target& t = target();
     const TilingOnTheFly baseline = tiling();
     std::mt19937_64 random(3);
@@ -112,7 +112,7 @@ TEST_P(Tiling, DensityIsThatOfSamples) {
     }
 }
 
-TEST_P(Tiling, EveryLitDirectionAboveTheHorizonHasADensity) {
+TEST_P(Tiling, EveryLitDirectionAboveTheHorizonHasAPdf) {
     const Target& t = target();
     const TilingOnTheFly baseline = tiling();
     std::mt19937_64 random(4);

@@ -52,7 +52,7 @@ const Vec3 kPositions[] = {{-1, 0, 0.8}, {1.5, -1, 1}, {0.3, 2.5, -2}, {1.9, 0.5
 constexpr SphereBins kBins{16, 8, 96};
 const SamplerCheck kCheck{10000, 5e-3, 1e-3, sidak(0.01, 200)};
 
-TEST(Portals, AreDrawnFromByTheirDensity) {
+TEST(Portals, AreSampledByTheirPdf) {
     const Target target = probe();
     const LightSamplerPtr uniform = uniform_portal_sampler(portals(), false),
                           windowed = windowed_portal_sampler(target, portals(), false, 96);
@@ -93,7 +93,7 @@ TEST(Portals, FindAllLightThatComesThroughThem) {
 }
 
 // Outside, and in the plane of a portal, there is nothing to sample; meshes with y up have their own coordinates.
-TEST(Portals, OfEveryPlace) {
+TEST(Portals, OfEveryPosition) {
     const Target target = probe();
     const std::vector<Portal> one{{{2, -1, 0}, {0, 2, 0}, {0, 0, 2}}};
     for (const bool is_uniform : {true, false}) {

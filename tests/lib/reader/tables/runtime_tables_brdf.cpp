@@ -49,7 +49,7 @@ void expect_the_walk(const BrdfPair& pair, std::size_t count) {
     EXPECT_LE(strays, count / 10);
 }
 
-TEST(RuntimeTablesOfBrdfs, AreTheWalkBitForBit) {
+TEST(RuntimeTablesOfBrdfs, AreTheTraversalBitForBit) {
     for (auto& [name, spec] : brdf_forms()) {
         SCOPED_TRACE(name);
         expect_the_walk(BrdfPair(spec.encode()), 3000);
@@ -58,7 +58,7 @@ TEST(RuntimeTablesOfBrdfs, AreTheWalkBitForBit) {
 
 class GoldenTablesOfBrdfs : public testing::TestWithParam<const char*> {};
 
-TEST_P(GoldenTablesOfBrdfs, AreTheWalkBitForBit) {
+TEST_P(GoldenTablesOfBrdfs, AreTheTraversalBitForBit) {
     std::ifstream in(std::string(ACDF_TEST_DIR "/golden/v1.0/") + GetParam() + ".acdf", std::ios::binary);
     const std::vector<std::uint8_t> bytes((std::istreambuf_iterator<char>(in)), {});
     expect_the_walk(BrdfPair(bytes), 5000);

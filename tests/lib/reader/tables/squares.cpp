@@ -63,7 +63,7 @@ Squares made(const std::vector<KeyBox>& boxes, u32 bits) {
     return out;
 }
 
-TEST(Squares, TellOfEachBox) {
+TEST(Squares, FindEachBox) {
     for (const u32 bits : {6u, 12u, 25u, 31u})
         for (const std::size_t count : {1u, 15u, 16u, 17u, 300u, 3000u}) {
             SCOPED_TRACE(testing::Message() << count << " boxes, " << bits << " bits");

@@ -14,14 +14,14 @@
 namespace acdf::tools {
 
 /// The pdf in sr^-1 of a unit direction. Called from several threads.
-using Density = std::function<float(const float direction[3])>;
+using PdfFunction = std::function<float(const float direction[3])>;
 
 /// The stored pdf, exactly. The view's File must outlive the result.
-Density pdf_of(const EnvironmentView& view);
+PdfFunction pdf_of(const EnvironmentView& view);
 
 /// The pdf proportional to `target` at full resolution (nearest lookup). `target` must outlive the result and
 /// have energy.
-Density pdf_of(const compress::Target& target);
+PdfFunction pdf_of(const compress::Target& target);
 
 /// What pixels outside of the disc of an angular map hold.
 constexpr float shows_nothing = -1.0f;
@@ -36,13 +36,12 @@ struct PlotMap : build::Map {
 };
 
 /// A pdf at the centres of the pixels of `map`.
-struct DensityImage {
+struct PdfImage {
     PlotMap map;
-    std::vector<float> density; ///< height x width, sr^-1, or shows_nothing
+    std::vector<float> pdf; ///< height x width, sr^-1, or shows_nothing
 
     float at(int x, int y) const {
-        return density[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +
-                       static_cast<std::size_t>(x)];
+        return pdf[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(x)];
     }
 };
 
@@ -59,6 +58,6 @@ bool pixel_direction(const PlotMap& map, double x, double y, float direction[3])
 /// Solid angle in sr of a pixel; 0 where its centre shows nothing.
 double pixel_solid_angle(const PlotMap& map, int x, int y);
 
-DensityImage draw_density(const PlotMap& map, const Density& density, const build::Progress& progress = {});
+PdfImage pdf_image(const PlotMap& map, const PdfFunction& pdf, const build::Progress& progress = {});
 
 } // namespace acdf::tools

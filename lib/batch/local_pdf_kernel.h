@@ -153,7 +153,7 @@ ACDF_LANE void weigh_tiles(const AcdfLocal& local, const Seen& seen, const long 
 }
 
 /* acdf_local_cell_pdf of kLanes cells. */
-ACDF_LANE Floats cell_densities(const AcdfLocal& local, const Cells& cells, const Boxes& done, std::size_t first) {
+ACDF_LANE Floats cell_pdfs(const AcdfLocal& local, const Cells& cells, const Boxes& done, std::size_t first) {
     Vector out[2];
     for (std::size_t half = 0; half < 2; ++half) {
         const std::size_t at = first + ACDF_WIDTH * half;
@@ -172,11 +172,11 @@ ACDF_LANE Floats cell_densities(const AcdfLocal& local, const Cells& cells, cons
 }
 
 /* Pdfs of all cells. Returns the lanes that are left to single calls. */
-ACDF_LANE std::uint64_t told_densities(const AcdfLocal& local, const Cells& cells, const Boxes& done, float* out) {
+ACDF_LANE std::uint64_t pdfs_of(const AcdfLocal& local, const Cells& cells, const Boxes& done, float* out) {
     std::uint64_t lost = 0;
     for (std::size_t first = 0; first < cells.count; first += kLanes) {
         alignas(64) float told[kLanes];
-        *(Floats*)told = cell_densities(local, cells, done, first);
+        *(Floats*)told = cell_pdfs(local, cells, done, first);
         for (std::size_t i = 0; i < kLanes && first + i < cells.count; ++i) {
             out[first + i] = told[i];
             lost |= (std::uint64_t)done.lost[first + i] << (first + i);
@@ -189,8 +189,8 @@ constexpr std::size_t kAhead = 8; // lanes, whose rows are asked for
 
 /* Pdfs of up to kBlock lanes; `at` and `alone` as in draw_block. */
 template <class At, class Alone>
-ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& alone, const float (*directions)[3],
-                             std::size_t count, float* out) {
+ACDF_LANE void pdf_block(const AcdfLocal& local, const At& at, const Alone& alone, const float (*directions)[3],
+                         std::size_t count, float* out) {
     Seen seen;
     Cells cells;
     Boxes done;
@@ -210,7 +210,7 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
     }
     weigh_tiles(local, seen, cells.tile, given, count, cells.probability);
     find_cells<true>(local, cells, &done);
-    lost |= told_densities(local, cells, done, out);
+    lost |= pdfs_of(local, cells, done, out);
     leave_alone(lost, count, alone);
 }
 

@@ -1,19 +1,19 @@
 // Pdfs as images: every pixel is the pdf of the direction at its centre.
-#include "tools/plot/density.h"
+#include "tools/plot/pdf_image.h"
 
 #include "tests/tools/plot/files.h"
 
 namespace acdf::test {
 namespace {
 
-using tools::DensityImage;
+using tools::PdfImage;
 
 class EachFit : public testing::TestWithParam<AcdfFit> {};
 
-TEST_P(EachFit, LatlongPixelsAreTheReadersDensity) {
+TEST_P(EachFit, LatlongPixelsAreTheReadersPdf) {
     const StoredEnvironment stored(dark_noise(), fit_options(GetParam(), 16, 8));
-    const DensityImage image =
-        tools::draw_density(tools::plot_map(build::Layout::latlong, 200), tools::pdf_of(stored.view()));
+    const PdfImage image =
+        tools::pdf_image(tools::plot_map(build::Layout::latlong, 200), tools::pdf_of(stored.view()));
     ASSERT_EQ(image.map.height, 100);
     for (int y = 0; y < 100; ++y)
         for (int x = 0; x < 200; ++x) {
@@ -24,10 +24,10 @@ TEST_P(EachFit, LatlongPixelsAreTheReadersDensity) {
         }
 }
 
-TEST_P(EachFit, AngularPixelsAreTheReadersDensity) {
+TEST_P(EachFit, AngularPixelsAreTheReadersPdf) {
     const StoredEnvironment stored(dark_noise(), fit_options(GetParam(), 16, 8));
-    const DensityImage image =
-        tools::draw_density(tools::plot_map(build::Layout::angular, 150), tools::pdf_of(stored.view()));
+    const PdfImage image =
+        tools::pdf_image(tools::plot_map(build::Layout::angular, 150), tools::pdf_of(stored.view()));
     ASSERT_EQ(image.map.height, 150);
     int outside = 0, differing = 0;
     for (int y = 0; y < 150; ++y)
@@ -49,10 +49,9 @@ TEST_P(EachFit, AngularPixelsAreTheReadersDensity) {
 INSTANTIATE_TEST_SUITE_P(Fits, EachFit,
                          testing::Values(ACDF_FIT_UNIFORM, ACDF_FIT_CDF, ACDF_FIT_PDF, ACDF_FIT_VARIANCE));
 
-TEST(PlotDensity, OfAProbeIsItsShareAtFullResolution) {
+TEST(PlotPdf, OfAProbeIsItsShareAtFullResolution) {
     const compress::Target target = dark_noise();
-    const DensityImage image =
-        tools::draw_density(tools::plot_map(build::Layout::latlong, 64), tools::pdf_of(target));
+    const PdfImage image = tools::pdf_image(tools::plot_map(build::Layout::latlong, 64), tools::pdf_of(target));
     double integral = 0.0;
     for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 64; ++x) {
@@ -65,7 +64,7 @@ TEST(PlotDensity, OfAProbeIsItsShareAtFullResolution) {
     EXPECT_NEAR(integral, 1.0, 1e-5);
 }
 
-TEST(PlotDensity, AngularShowsForwardInTheMiddleAndUpAbove) {
+TEST(PlotPdf, AngularShowsForwardInTheMiddleAndUpAbove) {
     const build::Map map = tools::plot_map(build::Layout::angular, 101);
     float d[3];
     ASSERT_TRUE(tools::pixel_direction(map, 50.5, 50.5, d));
@@ -78,14 +77,14 @@ TEST(PlotDensity, AngularShowsForwardInTheMiddleAndUpAbove) {
 }
 
 // An angular probe plotted in its own projection lies where the probe shows it, mirrored or not.
-TEST(PlotDensity, OfAnAngularProbeLooksLikeTheProbe) {
+TEST(PlotPdf, OfAnAngularProbeLooksLikeTheProbe) {
     const build::Map map = tools::plot_map(build::Layout::angular, 64);
     const build::Direction lamp{0.3, 0.9, std::sqrt(1.0 - 0.09 - 0.81)};
-    const auto density = [&](const float d[3]) {
+    const auto pdf = [&](const float d[3]) {
         const double dx = d[0] - lamp.x, dy = d[1] - lamp.y, dz = d[2] - lamp.z;
         return dx * dx + dy * dy + dz * dz < 0.01 ? 1.0f : 0.0f;
     };
-    const DensityImage image = tools::draw_density(map, density);
+    const PdfImage image = tools::pdf_image(map, pdf);
     const build::ImagePoint p = build::to_image(map, lamp);
     EXPECT_EQ(image.at(static_cast<int>(p.u * 64), static_cast<int>(p.v * 64)), 1.0f);
     EXPECT_EQ(image.at(static_cast<int>((1.0 - p.u) * 64), static_cast<int>(p.v * 64)), 0.0f);

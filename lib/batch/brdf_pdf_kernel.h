@@ -30,7 +30,7 @@ ACDF_LANE void find_square(Vector position, double resolution, long long* step, 
 
 /* Lanes whose cells are found and asked for from memory. */
 template <int Groups>
-struct DensitiesOf {
+struct PdfsOf {
     static constexpr std::size_t kLanes = Groups * kWidth;
     View view[Groups];
     Place place[Groups];
@@ -40,8 +40,8 @@ struct DensitiesOf {
 
 /* Of views that are known. */
 template <int Groups>
-ACDF_LANE void find(const BatchTable& t, const float (*wi)[3], DensitiesOf<Groups>* d) {
-    constexpr std::size_t lanes = DensitiesOf<Groups>::kLanes;
+ACDF_LANE void find(const BatchTable& t, const float (*wi)[3], PdfsOf<Groups>* d) {
+    constexpr std::size_t lanes = PdfsOf<Groups>::kLanes;
     alignas(64) long long step[2][lanes], square[2][lanes], lower[lanes];
     Directions half[Groups];
     for (int g = 0; g < Groups; ++g)
@@ -63,7 +63,7 @@ ACDF_LANE void find(const BatchTable& t, const float (*wi)[3], DensitiesOf<Group
 }
 
 template <int Groups>
-ACDF_LANE void end(const BatchTable& t, const DensitiesOf<Groups>& d, float* out) {
+ACDF_LANE void end(const BatchTable& t, const PdfsOf<Groups>& d, float* out) {
     Vector part[Groups][2], area[Groups];
     for (int g = 0; g < Groups; ++g) {
         const Integer cell = widened(&d.cell[g * kWidth]);
@@ -78,9 +78,9 @@ ACDF_LANE void end(const BatchTable& t, const DensitiesOf<Groups>& d, float* out
 }
 
 /* A block of them. */
-using Densities = DensitiesOf<kGroups>;
+using ViewPdfs = PdfsOf<kGroups>;
 
-ACDF_LANE void begin(const BatchTable& t, const float (*wo)[3], const float (*wi)[3], Densities* d) {
+ACDF_LANE void begin(const BatchTable& t, const float (*wo)[3], const float (*wi)[3], ViewPdfs* d) {
     find_views(t, wo, d->view);
     find(t, wi, d);
 }
@@ -101,9 +101,9 @@ ACDF_LANE View same_view(const AcdfBrdfView& view) {
 
 /* Pdfs of a view, of up to `Lanes` directions. */
 template <int Lanes>
-ACDF_LANE void some_view_densities(const BatchTable& t, const AcdfBrdfView& view, const float (*wi)[3],
-                                   std::size_t count, float* out) {
-    DensitiesOf<Lanes / kWidth> d;
+ACDF_LANE void some_view_pdfs(const BatchTable& t, const AcdfBrdfView& view, const float (*wi)[3],
+                              std::size_t count, float* out) {
+    PdfsOf<Lanes / kWidth> d;
     for (View& v : d.view) v = same_view(view);
     float last[Lanes][3] = {}, told[Lanes];
     if (count < Lanes) std::memcpy(last, wi, count * sizeof *wi);
@@ -113,15 +113,15 @@ ACDF_LANE void some_view_densities(const BatchTable& t, const AcdfBrdfView& view
 }
 
 /* acdf_brdf_view_pdf of an array of directions: sixteen at once, or as many as are left. */
-ACDF_LANE void view_densities(const BatchTable& t, const AcdfBrdfView& view, const float (*wi)[3],
-                              std::size_t count, float* out) {
+ACDF_LANE void view_pdfs(const BatchTable& t, const AcdfBrdfView& view, const float (*wi)[3], std::size_t count,
+                         float* out) {
     constexpr std::size_t most = 16, few = 8;
     for (; count > few; count -= most, wi += most, out += most) {
-        some_view_densities<most>(t, view, wi, count < most ? count : most, out);
+        some_view_pdfs<most>(t, view, wi, count < most ? count : most, out);
         if (count <= most) return;
     }
-    if (count > kWidth) some_view_densities<few>(t, view, wi, count, out);
-    else if (count > 0) some_view_densities<kWidth>(t, view, wi, count, out);
+    if (count > kWidth) some_view_pdfs<few>(t, view, wi, count, out);
+    else if (count > 0) some_view_pdfs<kWidth>(t, view, wi, count, out);
 }
 
 } // namespace

@@ -165,7 +165,7 @@ protected:
 /// Those whose texels have about one cosine each.
 class FineMaps : public Maps {};
 
-TEST_P(Maps, DensitiesIntegrateToOne) {
+TEST_P(Maps, PdfsIntegrateToOne) {
     const auto light = map_->light_view();
     const AcdfEnvironment& env = light.data().environment;
     for (const Normal& n : normals(1, 20, 4)) {

@@ -40,7 +40,7 @@ const MadeBrdf& made(int form) {
     return *all[form];
 }
 
-class BrdfDensity : public testing::TestWithParam<int> {};
+class BrdfPdf : public testing::TestWithParam<int> {};
 
 View view_of(double cosine, double phi = 0.4) {
     View view;
@@ -90,7 +90,7 @@ std::vector<double> expected_bins(const acdf::BrdfView& brdf, const View& view) 
     return out;
 }
 
-TEST_P(BrdfDensity, drawsWhatItTells) {
+TEST_P(BrdfPdf, samplesByItsPdf) {
     const MadeBrdf& brdf = made(GetParam());
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> u(0.0, 1.0);
@@ -112,7 +112,7 @@ TEST_P(BrdfDensity, drawsWhatItTells) {
     }
 }
 
-TEST_P(BrdfDensity, sampleTellsThePdf) {
+TEST_P(BrdfPdf, sampleReturnsThePdf) {
     const MadeBrdf& brdf = made(GetParam());
     std::mt19937_64 random(9);
     std::uniform_real_distribution<double> u(0.0, 1.0);
@@ -125,7 +125,7 @@ TEST_P(BrdfDensity, sampleTellsThePdf) {
     }
 }
 
-TEST_P(BrdfDensity, coversTheLightAndIntegratesTo1) {
+TEST_P(BrdfPdf, coversTheLightAndIntegratesTo1) {
     const MadeBrdf& brdf = made(GetParam());
     std::vector<View> views = acdf::build::random_views(6, brdf.source->isotropic);
     for (const double cosine : {1.0, 0.5, 0.1, 0.03, 1e-3, 1e-5}) views.push_back(view_of(cosine));
@@ -147,7 +147,7 @@ TEST(BrdfPdfs, areMeasuredNextToTheOppositeOfTheView) {
 }
 
 // For an odd number of columns and an even one: a column may be its own mirror image.
-TEST_P(BrdfDensity, onOneSideIsThatOnBothWhereBothAreAlike) {
+TEST_P(BrdfPdf, onOneSideIsThatOnBothWhereBothAreAlike) {
     const MadeBrdf& brdf = made(GetParam());
     const Sides sides = acdf::build::sides(*brdf.source);
     EXPECT_EQ(sides == Sides::alike, brdf.source->isotropic && brdf.source->mirror);
@@ -166,7 +166,7 @@ TEST_P(BrdfDensity, onOneSideIsThatOnBothWhereBothAreAlike) {
     }
 }
 
-TEST_P(BrdfDensity, tellsTheAlbedo) {
+TEST_P(BrdfPdf, storesTheAlbedo) {
     const MadeBrdf& brdf = made(GetParam());
     const auto views = acdf::build::random_views(6, brdf.source->isotropic);
     for (const auto& v : acdf::build::measure_views(brdf.file, brdf.reflected, views, Sides::any, 201, 400)) {
@@ -175,7 +175,7 @@ TEST_P(BrdfDensity, tellsTheAlbedo) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Forms, BrdfDensity, testing::Range(0, int{forms}),
+INSTANTIATE_TEST_SUITE_P(Forms, BrdfPdf, testing::Range(0, int{forms}),
                          [](const auto& info) { return kFormNames[info.param]; });
 
 TEST(BrdfFit, isNearlyFreeOfNoise) {

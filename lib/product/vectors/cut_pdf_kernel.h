@@ -2,7 +2,7 @@
 // local_kernel.h.
 #pragma once
 
-#include "batch/local_density_kernel.h"
+#include "batch/local_pdf_kernel.h"
 #include "product/vectors/alone.h"
 
 #include <acdf/product/cut_batch.h>
@@ -42,8 +42,8 @@ ACDF_LANE void weigh_cut_tiles(const AcdfLocal& local, const AcdfLocalPoint& poi
 }
 
 /* acdf_cut_pdf of up to ACDF_CUT_BATCH lanes. */
-ACDF_LANE void cut_density_block(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
-                                 const float (*directions)[3], std::size_t count, float* out) {
+ACDF_LANE void cut_pdf_block(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
+                             const float (*directions)[3], std::size_t count, float* out) {
     alignas(64) long long part[kRoom];
     Cells cells;
     Boxes done;
@@ -54,18 +54,18 @@ ACDF_LANE void cut_density_block(const AcdfLocal& local, const AcdfLocalPoint& p
     ask_for_curves(local, cells);
     weigh_cut_tiles(local, point, cut, part, &cells);
     find_cells<true>(local, cells, &done);
-    lost |= told_densities(local, cells, done, out);
+    lost |= pdfs_of(local, cells, done, out);
     for (; lost; lost &= lost - 1) {
         const auto lane = (std::size_t)__builtin_ctzll(lost);
         out[lane] = acdf::alone::cut_pdf(local, point, cut, directions[lane]);
     }
 }
 
-ACDF_LANE void cut_densities(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
-                             const float (*directions)[3], std::size_t count, float* out) {
+ACDF_LANE void cut_pdfs(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
+                        const float (*directions)[3], std::size_t count, float* out) {
     constexpr std::size_t batch = ACDF_CUT_BATCH;
     for (std::size_t first = 0; first < count; first += batch)
-        cut_density_block(local, point, cut, directions + first, std::min(count - first, batch), out + first);
+        cut_pdf_block(local, point, cut, directions + first, std::min(count - first, batch), out + first);
 }
 
 } // namespace

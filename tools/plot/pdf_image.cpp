@@ -1,4 +1,4 @@
-#include "tools/plot/density.h"
+#include "tools/plot/pdf_image.h"
 #include "compress/parallel.h"
 
 #include <algorithm>
@@ -7,11 +7,11 @@
 
 namespace acdf::tools {
 
-Density pdf_of(const EnvironmentView& view) {
+PdfFunction pdf_of(const EnvironmentView& view) {
     return [view](const float direction[3]) { return view.pdf(direction); };
 }
 
-Density pdf_of(const compress::Target& target) {
+PdfFunction pdf_of(const compress::Target& target) {
     const double scale = 1.0 / compress::integral(target);
     const bool square = target.parameterization == ACDF_PARAM_OCTAHEDRAL;
     const build::Map grid{square ? build::Layout::octahedral : build::Layout::latlong,
@@ -59,15 +59,15 @@ double pixel_solid_angle(const PlotMap& map, int x, int y) {
     return 8.0 / (double(map.width) * map.height); // of 2 pi on a disc of pi, in a square of 4
 }
 
-DensityImage draw_density(const PlotMap& map, const Density& density, const build::Progress& progress) {
-    DensityImage image{map, {}};
+PdfImage pdf_image(const PlotMap& map, const PdfFunction& pdf, const build::Progress& progress) {
+    PdfImage image{map, {}};
     const auto width = static_cast<std::size_t>(map.width);
-    image.density.assign(width * static_cast<std::size_t>(map.height), shows_nothing);
+    image.pdf.assign(width * static_cast<std::size_t>(map.height), shows_nothing);
     std::atomic<int> rows{0};
     compress::parallel_for(0, map.height, [&](int y) {
-        float* row = image.density.data() + static_cast<std::size_t>(y) * width;
+        float* row = image.pdf.data() + static_cast<std::size_t>(y) * width;
         for (int x = 0; x < map.width; ++x)
-            if (float direction[3]; pixel_direction(map, x + 0.5, y + 0.5, direction)) row[x] = density(direction);
+            if (float direction[3]; pixel_direction(map, x + 0.5, y + 0.5, direction)) row[x] = pdf(direction);
         if (progress) progress(++rows / static_cast<double>(map.height), "evaluating");
     });
     return image;

@@ -143,7 +143,7 @@ ACDF_LANE void weigh_light(const AcdfLocal& local, std::size_t i, FastFinds* f) 
 }
 
 /* The pdfs of lanes whose cells are known. */
-ACDF_LANE void store_densities(const AcdfLocal& local, const FastCells& c, std::size_t count, float* out) {
+ACDF_LANE void store_pdfs(const AcdfLocal& local, const FastCells& c, std::size_t count, float* out) {
     for (std::size_t first = 0; first < count; first += kLanes) {
         Vector pdf[2];
         for (std::size_t half = 0; half < 2; ++half) {
@@ -152,7 +152,7 @@ ACDF_LANE void store_densities(const AcdfLocal& local, const FastCells& c, std::
             Vector z[2];
             Ints ends[2];
             load_ends(c, lane, ends);
-            pdf[half] = fast_density(local, c, ends, box, heights_of(local, box, z), lane);
+            pdf[half] = fast_cell_pdf(local, c, ends, box, heights_of(local, box, z), lane);
         }
         const Floats told = to_floats((Doubles)pdf[0], (Doubles)pdf[1]);
         if (count - first >= kLanes) std::memcpy(out + first, &told, sizeof told);
@@ -162,8 +162,8 @@ ACDF_LANE void store_densities(const AcdfLocal& local, const FastCells& c, std::
 
 /* Pdfs of up to kBlock lanes; `at` and `alone` as draw_block of local_kernel.h has them. */
 template <class At, class Alone>
-ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Alone& alone,
-                                  const float (*directions)[3], std::size_t count, float* out) {
+ACDF_LANE void fast_pdf_block(const AcdfLocal& local, const At& at, const Alone& alone,
+                              const float (*directions)[3], std::size_t count, float* out) {
     FastFinds f;
     const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes;
     std::uint64_t lost = 0;
@@ -177,7 +177,7 @@ ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Al
     find_fast_cells(whole, &f);
     for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) weigh_fast_tiles(first, &f);
     for (; f.lit; f.lit &= f.lit - 1) weigh_light(local, (std::size_t)__builtin_ctzll(f.lit), &f);
-    store_densities(local, f.cells, count, out);
+    store_pdfs(local, f.cells, count, out);
     leave_alone(lost, count, alone);
 }
 
@@ -187,8 +187,8 @@ ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Al
 template <class Of>
 ACDF_LANE void pdf_all_fast(const AcdfLocal& local, Of of, const float (*directions)[3], std::size_t count,
                             float* out) {
-    densities_in_blocks<kBlock, FastPoints<false>>(
-        local, of, directions, count, out, [&](const auto&... rest) { fast_density_block(local, rest...); });
+    pdfs_in_blocks<kBlock, FastPoints<false>>(local, of, directions, count, out,
+                                              [&](const auto&... rest) { fast_pdf_block(local, rest...); });
 }
 
 } // namespace
