@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
-"""style.py [--self-test] [--program ACDF] [--counts] FILE...: fails where a text is hard to read, and lists where.
+"""style.py [--self-test] [--program ACDF] [--counts] FILE... [--messages FOLDER...]: fails where a text is hard to read,
+and lists where.
 
 Reads Markdown pages (.md), comments of C and C++ headers (.h) and, with --program, what `acdf help` and `acdf COMMAND
---help` print. Tables and code are exempt from the limits of length, and code from the words, but not from old options."""
+--help` print. Tables and code are exempt from the limits of length, and code from the words, but not from old options.
+With --messages it also reads the string literals of all C++ sources of folders, for the words alone."""
+import pathlib
 import re
 import subprocess
 import sys
 
 MOST_WORDS = 30         # of a sentence
 MOST_CHARACTERS = 6 * 120  # of a paragraph: six lines, however they are broken
+FEWEST_WORDS = 2        # of a string literal that is a message, not a name
 
 # What is searched, what to write instead, an example of it, and one that is right.
 WORDS = [
@@ -103,6 +107,28 @@ def help_blocks(text):
                 block.append(words.strip())
 
 
+# Comments, characters and includes, which hold no messages; and literals, raw or not.
+TOKENS = re.compile(r"//[^\n]*|/\*.*?\*/|'(?:\\.|[^'\\\n])'|^#include[^\n]*|"
+                    r'R"(?P<mark>\w*)\((?P<raw>.*?)\)(?P=mark)"|"(?P<plain>(?:\\.|[^"\\\n])*)"', re.S | re.M)
+
+
+def message_blocks(text):
+    """The same of the string literals of C++ that have some words; those that nothing separates are one."""
+    parts, begin, end = [], 0, None
+    for match in [*TOKENS.finditer(text), None]:
+        literal = match and (match["raw"] if match["raw"] is not None else match["plain"])
+        follows = match and end is not None and not text[end:match.start()].strip()
+        if parts and not (literal is not None and follows):
+            message = "".join(parts)
+            if len(re.findall(r"[A-Za-z]{2,}", message)) >= FEWEST_WORDS:
+                yield text.count("\n", 0, begin) + 1, message, "row"
+            parts = []
+        if literal is not None:
+            begin = begin if parts else match.start()
+            parts.append(re.sub(r"\\[nt]", " ", literal))
+            end = match.end()
+
+
 def faults(blocks):
     """(line, what is wrong) of blocks. In help, where values of an option are listed, ; and : end a sentence, too."""
     for begin, raw, kind in blocks:
@@ -169,6 +195,9 @@ def self_test():
     assert count("  --draw NAME [a]  How it draws,\n        at places\n\nExamples:\n  acdf draw\n", help_blocks) == 2
     assert not count("  -q  " + thirty[:-2] + ": " + thirty.lower(), help_blocks)
     assert count("  -q  " + long_sentence + "\n  -v  " + thirty, help_blocks) == 1
+    assert count('say("it draws "\n    "a wave"); // it draws\nint draw; char c = \'"\'; say("draws");', message_blocks) == 2
+    assert count('say("it\\ndraws", R"x(at a "place")x", "the file \\"company\\"");', message_blocks) == 3
+    assert [line for line, _ in faults(message_blocks('#include "a/draw wave.h"\n\n"it is", "it draws"'))] == [3]
 
 
 def main(arguments):
@@ -180,6 +209,14 @@ def main(arguments):
         for name, text in program_texts(arguments[at + 1]):
             examine(name, text, help_blocks, counts)
         del arguments[at:at + 2]
+    if "--messages" in arguments:
+        at = arguments.index("--messages")
+        for folder in arguments[at + 1:]:
+            found = {}
+            for path in sorted(path for path in pathlib.Path(folder).rglob("*") if path.suffix in (".c", ".cpp", ".h")):
+                examine(str(path), path.read_text(encoding="utf-8"), message_blocks, found)
+            counts[f"messages of {folder}"] = sum(found.values())
+        del arguments[at:]
     for path in (argument for argument in arguments if not argument.startswith("--")):
         with open(path, encoding="utf-8") as file:
             examine(path, file.read(), page_blocks if path.endswith(".md") else header_blocks, counts)

@@ -43,8 +43,8 @@ builder::Target lit(const std::string& path, const input::Probe& probe, const Ma
         const build::BadTexels& bad = probe.bad;
         const std::string repaired = bad.count() == 0 ? "" : " once " + counts(bad) + " texels are repaired";
         throw Failure(path + ": the probe is black in the channels asked for" + repaired +
-                      ", so there is nothing to sample; is it the right file or layer? (what is black in all "
-                      "channels is accepted with --on-black uniform)");
+                      ", so there is nothing to sample; is it the right file or layer? (a probe that is black in "
+                      "all channels is accepted with --on-black uniform)");
     } catch (const std::invalid_argument& error) {
         throw Failure(path + ": " + error.what());
     }
