@@ -20,7 +20,7 @@ int main() {
     acdf::File file; // reads made.bytes where they lie
     if (!acdf::File::from_memory(made.bytes.data(), made.bytes.size(), file).ok()) return 1;
     const acdf::DirectionSample s = file.environment().sample(0.5, 0.25);
-    std::printf("relative variance %.2g; a direction (%.2f, %.2f, %.2f) of density %.3g per steradian\n",
+    std::printf("relative variance %.2g; a direction (%.2f, %.2f, %.2f) of pdf %.3g per steradian\n",
                 made.accuracy.relative_variance, double(s.direction[0]), double(s.direction[1]),
                 double(s.direction[2]), double(s.pdf));
 }

@@ -1,4 +1,4 @@
-// embed_builder.cpp: a renderer that holds a sky's pixels gets a density of 64 KiB to sample its directions from,
+// embed_builder.cpp: a renderer that holds a sky's pixels gets a pdf of 64 KiB to sample its directions from,
 // while it loads: one call of the builder, one of the reader, and no file.
 //
 //     embed_builder [WIDTH]     pixels of the lat-long map, 4096 x 2048 by default

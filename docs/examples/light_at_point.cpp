@@ -1,5 +1,5 @@
 // Light that is not infinitely far, at any point: samples directions from the light field of docs/table.md between
-// its cameras, with their exact density, and estimates the irradiance there: light_at_point light_field.acdf
+// its cameras, with their exact pdf, and estimates the irradiance there: light_at_point light_field.acdf
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -99,5 +99,5 @@ int main(int argc, char** argv) {
     std::printf("irradiance at the point   %.2f\n", exact);
     std::printf("10000 samples of the file %.2f\n", sampled);
     std::printf("10000 even samples        %.2f\n", even);
-    std::printf("the density's integral    %.3f\n", whole);
+    std::printf("the integral of the pdf   %.3f\n", whole);
 }

@@ -1,5 +1,5 @@
 # %% [markdown]
-# An environment map of a few numbers, its density, and samples of it. Run all of it: `python3 notebook.py [PICTURE.png]`.
+# An environment map of a few numbers, its pdf, and samples of it. Run all of it: `python3 notebook.py [PICTURE.png]`.
 # %%
 import sys
 
@@ -29,6 +29,6 @@ weight = image[texel, across] * np.maximum(directions[:, 2:], 0) / pdf[:, None]
 print("irradiance on the ground, r g b:", np.round(weight.mean(0), 2))
 
 # %% Pictures.
-axes = acdf.plot.density(sky)
+axes = acdf.plot.pdf(sky)
 acdf.plot.samples(directions[:2000], ax=axes)
-axes.figure.savefig(sys.argv[1] if len(sys.argv) > 1 else "density.png", dpi=100)
+axes.figure.savefig(sys.argv[1] if len(sys.argv) > 1 else "pdf.png", dpi=100)

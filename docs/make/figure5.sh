@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Our version of Fig. 5 of Lawrence, Rusinkiewicz and Ramamoorthi 2005: the density of the Grace Cathedral probe on
+# Our version of Fig. 5 of Lawrence, Rusinkiewicz and Ramamoorthi 2005: the pdf of the Grace Cathedral probe on
 # the unit disc, at full resolution, in uniform and adaptive cascades of 16 x 16 and 64 x 64 segments, and in a
 # minimum-variance tree with as many cells as the 64 x 64, all on the paper's lat-long grid. Every panel has the same
 # colours, and under it what it costs: cells, bytes, and the relative variance of one sample, as `acdf measure` prints them.

@@ -46,7 +46,7 @@ sizes() {
     for probe in "${six[@]}"; do row "${probe%.*}" "$probes/$probe" --filter nearest; done
 }
 
-# What files of 64 KiB for either lookup have under either; "biased" where light has no density.
+# What files of 64 KiB for either lookup have under either; "biased" where the pdf is 0 in directions with light.
 filters() {
     echo "| probe | nearest lookup: file for it | bilinear file | bilinear lookup: file for it | nearest file |"
     echo "|---|---|---|---|---|"

@@ -20,7 +20,7 @@ projection_of() {
     esac
 }
 
-# variance COMMAND SOURCE KIB OPTIONS...: of the file, as it tells it itself
+# variance COMMAND SOURCE KIB OPTIONS...: of the file, as stored in it
 variance() {
     local command=$1 source=$2 size=$3
     shift 3

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """octahedral_exact.py DATA: files for maps on the octahedral square, beside those for the lat-long probes that the maps were
-made of. What `acdf env` prints is held to a sum over 6 x 6 directions in each texel, whose densities the reader tells. DATA
+made of. What `acdf env` prints is held to a sum over 6 x 6 directions in each texel, whose pdfs the reader returns. DATA
 holds probes/; ACDF names the program (default: build/release/tools/acdf); PROBES, SIZES and BUDGETS choose among rows.
 Needs numpy, oiiotool and, in PYTHONPATH, the module acdf (build/release/lib/python)."""
 import json
@@ -71,7 +71,7 @@ def make(image, budget, projection, file):
 
 
 def summed(image, file):
-    """Relative variance, largest weight over the mean, and the share of light with density 0, by the reader's densities."""
+    """Relative variance, largest weight over the mean, and the share of light with pdf 0, by the reader's pdfs."""
     light = image.astype("<f4").astype(float) @ [0.2126, 0.7152, 0.0722]
     n, view = len(light), acdf.open(file)
     mean, second, largest, lost, step = light.mean() * 4 * np.pi, 0, 0, 0, max(1, 2**20 // len(light))

@@ -41,7 +41,7 @@ class Points:
         self.cosine = np.maximum(0, normals @ DIRECTIONS.T)
 
     def variance(self, light, p, power=False):
-        """Of two samples, mean over points, relative to (L^2 + (0.1 mean L)^2) as acdf render has it. p: density of each
+        """Of two samples, mean over points, relative to (L^2 + (0.1 mean L)^2) as acdf render has it. p: pdf of each
         texel, for all points or for each."""
         f, b = self.cosine * light, self.cosine / np.pi
         f = f if self.seen is None else f * self.seen
@@ -101,7 +101,7 @@ def luminance(image):
     return np.maximum(0, np.array(rgb) @ [0.2126, 0.7152, 0.0722])
 
 
-def density(file, normal=None):
+def pdf_of(file, normal=None):
     points = "\n".join("%.9g %.9g %.9g" % tuple(d) for d in DIRECTIONS)
     of = [] if normal is None else ["--normal=" + ",".join("%.9g" % v for v in normal)]
     text = subprocess.run([ACDF, "pdf", file, *of], input=points, capture_output=True, text=True, check=True).stdout
@@ -120,11 +120,11 @@ def rows(image, light, work, point_sets):
         subprocess.run([ACDF, kind, image, "--budget", budget, "-f", "-q", "-o", file, *options], check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         if kind == "env":
-            p = density(file)
+            p = pdf_of(file)
             yield f"`{name}`", [points.variance(light, p, "power" in name) for points in point_sets]
             continue
         different, which = np.unique(point_sets[0].normals, axis=0, return_inverse=True)
-        p = np.array([density(file, n) for n in different])[which.ravel()]
+        p = np.array([pdf_of(file, n) for n in different])[which.ravel()]
         yield f"`{name}`", [points.variance(light, p, "power" in name) for points in point_sets[:2]] + [np.nan]
 
 

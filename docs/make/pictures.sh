@@ -64,7 +64,7 @@ noise() {
     cat "$work/README.md" > "$root/README.md"
 }
 
-# The densities of one local file for two normals.
+# The pdfs of one local file for two normals.
 local_file() {
     "$acdf" local "$data/probes/venice_sunset_1k.hdr" --shape small -o "$work/venice_sunset.acdf" --force --quiet
     "$acdf" plot "$work/venice_sunset.acdf" -o "$work/1.png" --normal 0,0,1 --width 512 --no-knots --range 1e-5:10 --force --quiet
@@ -105,10 +105,10 @@ plot() {
     side_by_side plot "$work"/{4KiB,64KiB}.png
 }
 
-# equal_time SCENE SAMPLER...: the first sampler draws 16 samples a pixel, the others as many as they can in its time; what
+# equal_time SCENE SAMPLER...: the first sampler takes 16 samples a pixel, the others as many as they can in its time; what
 # they make anew for a picture takes some of it. A sampler is TEXT=NAME.
 equal_time() {
-    local scene=$1 options=() shown=() one points made drawn budget='' i=0 samples
+    local scene=$1 options=() shown=() one points made sampling budget='' i=0 samples
     shift
     local common=(render --scene "$results/$scene.json" --data "$data" --size 320x240 --sequence independent --no-reference --seeds 3
                   --quiet --force)
@@ -117,9 +117,9 @@ equal_time() {
     points=$(jq .points "$work/timed/render.json")
     for one in "$@"; do
         made=$(jq "1e9 * (.samplers[$i].making_seconds // 0) / $points" "$work/timed/render.json") # ns a pixel
-        drawn=$(jq ".samplers[$i].nanoseconds.value - $made" "$work/timed/render.json")
-        budget=${budget:-$drawn}
-        samples=$(awk -v b="$budget" -v m="$made" -v d="$drawn" 'BEGIN { s = int(16 * (b - m) / d + 0.5); print s < 2 ? 2 : s }')
+        sampling=$(jq ".samplers[$i].nanoseconds.value - $made" "$work/timed/render.json")
+        budget=${budget:-$sampling}
+        samples=$(awk -v b="$budget" -v m="$made" -v d="$sampling" 'BEGIN { s = int(16 * (b - m) / d + 0.5); print s < 2 ? 2 : s }')
         "$acdf" "${common[@]}" --samples "$samples" --no-timing -o "$work/lit-$i" --sampler "${one%=*}" > /dev/null
         panel "$(ls "$work/lit-$i"/*.png | grep -v -e reference -e -variance -e -above)" "$work/panel-$i.png" "${one##*=}" \
             "$samples samples, variance $(printf %.3g "$(jq '.samplers[0].relative_variance.value' "$work/lit-$i/render.json")")"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """visibility_scenes.py FOLDER: writes the scenes of docs/visibility.md, meshes (.obj, z up) and the .json that names them.
 
-The same on every machine. Meshes are told by absolute paths, so that --data of acdf render can be the folder of probes.
+The same on every machine. Meshes are named by absolute paths, so that --data of acdf render can be the folder of probes.
 """
 import json
 import math

@@ -22,7 +22,7 @@ function directionsOf(sampled) {
 const densitiesOf = sampled => sampled.filter((_, i) => i % 4 === 3);
 
 for (const [name, options] of [["sky", {}], ["local", {normal: [0, 0.6, 0.8]}]])
-    test(`draws and densities of ${name}.acdf are the program's to the bit`, () => {
+    test(`samples and pdfs of ${name}.acdf are the program's to the bit`, () => {
         const file = reader.open(readFileSync(`${name}.acdf`)), {u, sampled} = samplesOf(`${name}.csv`);
         assert.equal(sampled.length, 80000);
         assert.deepEqual(file.sample(u, options), sampled);

@@ -1,4 +1,4 @@
-"""Takes the sun out of a world's picture: its texture becomes an .acdf, the cone in which that draws most of its samples a sun
+"""Takes the sun out of a world's picture: its texture becomes an .acdf, the cone in which that takes most of its samples a sun
 lamp, and what is left the world's new texture. The light is the same; the lamp is sampled by itself.
 
     blender -b scene.blend -P sun_and_sky.py -- [--budget 16KiB] [--least 0.1] [--widest 5] -o out.blend

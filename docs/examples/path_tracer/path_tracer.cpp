@@ -96,7 +96,7 @@ struct EnvironmentLight {
 };
 
 /// `acdf local`: what is above the surface's horizon, times the cosine; of files made for the scene, what is seen
-/// from the place.
+/// from the position.
 struct LocalLight {
     static constexpr bool draws = true;
     acdf::LocalEnvironmentView view;

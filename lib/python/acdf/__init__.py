@@ -10,7 +10,7 @@
     True
 
 `open` reads a file, the `build_...` functions make one from arrays. Both return an `Environment`, a `LocalEnvironment`, a
-`Brdf` or a `Table`. Directions are unit vectors in a right-handed frame with z up, densities are per steradian.
+`Brdf` or a `Table`. Directions are unit vectors in a right-handed frame with z up, pdfs are per steradian.
 """
 
 from ._acdf import __version__, format_version

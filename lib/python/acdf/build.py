@@ -181,7 +181,7 @@ def build_local(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> LocalEnvironment:
-    """A local environment map from pixels: a density for every normal. The default budget is 1 MiB.
+    """A local environment map from pixels: a pdf for every normal. The default budget is 1 MiB.
 
     Options are those of build_environment, and:
     subdivisions, tiles: how many bins of normals (4 n^2 + 2) and shared tiles; None: as suits the size.
@@ -189,7 +189,7 @@ def build_local(
     max_weight: of the samples of all normals that accuracy is measured for.
     cosine_share: of samples that are taken around the normal instead, in [0, 0.99].
     sharing: bins share tiles; else each has a tree of its own.
-    shape: "small", the least noise for its bytes, or "fast", a sample from which takes two thirds of the time and a density half.
+    shape: "small", the least noise for its bytes, or "fast", a sample from which takes two thirds of the time and a pdf half.
         Fast files share tiles, and have neither max_weight nor an MIS partner. "auto" makes both, and chooses fast where it has no
         more noise after the same time.
     """
@@ -247,10 +247,10 @@ def build_table(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Table:
-    """A density over any table of numbers >= 0, in one to six axes; each number is constant on its box of the grid.
+    """A pdf over any table of numbers >= 0, in one to six axes; each number is constant on its box of the grid.
     The default budget is 64 KiB, of more than 256 bins 256 bytes a bin.
 
-    indexed: so many leading axes are chosen by who samples: each index is a bin with a density of its own.
+    indexed: so many leading axes are chosen by who samples: each index is a bin with a pdf of its own.
     names, ranges: of each axis; by default x0, x1, ..., and from 0 to its length.
     cells: a bin, on average.
     bad_as_zero: NaN, infinite and negative numbers count as 0; else they are a BuildError.

@@ -1,4 +1,4 @@
-"""Open files: densities to sample from and to evaluate, for arrays.
+"""Open files: pdfs to sample from and to evaluate, for arrays.
 
 Random numbers `u` are float64 in [0, 1] of shape (..., 2); directions, normals and views are float32 of shape (..., 3). Such
 arrays are used as they lie if they are contiguous, others are converted. Results have the leading shape of what was asked.
@@ -21,9 +21,9 @@ Path = Union[str, "os.PathLike[str]"]
 
 
 class Samples(NamedTuple):
-    """What was sampled: directions (of tables points), and the density of each.
+    """What was sampled: directions (of tables points), and the pdf of each.
 
-    Where nothing can be sampled the density is 0; the direction is 0 then, a point NaN.
+    Where nothing can be sampled the pdf is 0; the direction is 0 then, a point NaN.
     """
 
     direction: np.ndarray
@@ -99,7 +99,7 @@ class File:
 
 
 class Environment(File):
-    """An environment map: one density over the sphere."""
+    """An environment map: one pdf over the sphere."""
 
     def sample(self, u: Any, *, out: Optional[Samples] = None) -> Samples:
         """Samples a direction for each pair of numbers. u[..., 0] moves along phi, u[..., 1] along theta.
@@ -112,7 +112,7 @@ class Environment(File):
         return Samples(*self._handle.sample(None, u, tuple(out or _NEW)))
 
     def pdf(self, directions: Any, *, out: Optional[np.ndarray] = None) -> np.ndarray:
-        """The density in sr^-1 with which `sample` samples each direction, float32; 0 where none falls, and for vectors that
+        """The pdf in sr^-1 with which `sample` samples each direction, float32; 0 where none falls, and for vectors that
         are NaN or not of unit length.
 
         >>> import acdf, numpy as np
@@ -123,19 +123,19 @@ class Environment(File):
         return self._handle.pdf(None, directions, out)
 
     def invert(self, directions: Any) -> np.ndarray:
-        """The numbers u that sample each direction; NaN where the density is 0."""
+        """The numbers u that sample each direction; NaN where the pdf is 0."""
         return self._handle.invert(None, directions)
 
 
 class LocalEnvironment(File):
-    """A density for every normal: of light above its horizon, times the cosine.
+    """A pdf for every normal: of light above its horizon, times the cosine.
 
     Normals have any length > 0. Their leading shape begins that of `u` or of the directions: one normal (3,) serves all,
     (n, 3) serve n samples (n, 2), or n groups of m (n, m, 2).
     """
 
     def sample(self, normals: Any, u: Any, *, out: Optional[Samples] = None) -> Samples:
-        """Samples directions. Density 0 where the normal is zero or NaN, or nothing shines on it; a direction below the
+        """Samples directions. The pdf is 0 where the normal is zero or NaN, or no light reaches it; a direction below the
         horizon counts as 0.
 
         >>> import acdf, numpy as np
@@ -146,7 +146,7 @@ class LocalEnvironment(File):
         return Samples(*self._handle.sample(normals, u, tuple(out or _NEW)))
 
     def pdf(self, normals: Any, directions: Any, *, out: Optional[np.ndarray] = None) -> np.ndarray:
-        """Densities in sr^-1, float32: exactly those of `sample` for what it returned."""
+        """Pdfs in sr^-1, float32: exactly those of `sample` for what it returned."""
         return self._handle.pdf(normals, directions, out)
 
     def irradiance(self, normals: Any) -> np.ndarray:
@@ -155,7 +155,7 @@ class LocalEnvironment(File):
 
 
 class Brdf(File):
-    """A density of wi for every wo, both unit vectors in the surface's frame, z its normal. It follows what the surface
+    """A pdf of wi for every wo, both unit vectors in the surface's frame, z its normal. It follows what the surface
     reflects, times the cosine.
 
     The leading shape of `wo` begins that of `u` or `wi`, as for normals. Arrays of some thousands are sampled by vector
@@ -163,15 +163,15 @@ class Brdf(File):
     """
 
     def sample(self, wo: Any, u: Any, *, out: Optional[Samples] = None) -> Samples:
-        """Samples wi. Density 0 where wo is not a unit vector above the surface; wi below it counts as 0."""
+        """Samples wi. The pdf is 0 where wo is not a unit vector above the surface; wi below it counts as 0."""
         return Samples(*self._handle.sample(wo, u, tuple(out or _NEW)))
 
     def pdf(self, wo: Any, wi: Any, *, out: Optional[np.ndarray] = None) -> np.ndarray:
-        """Densities of wi in sr^-1, float32."""
+        """Pdfs of wi in sr^-1, float32."""
         return self._handle.pdf(wo, wi, out)
 
     def invert(self, wo: Any, wi: Any) -> np.ndarray:
-        """The numbers u that sample wi; NaN where the table's density is 0."""
+        """The numbers u that sample wi; NaN where the table's pdf is 0."""
         return self._handle.invert(wo, wi)
 
     def albedo(self, wo: Any) -> np.ndarray:
@@ -180,14 +180,14 @@ class Brdf(File):
 
 
 class Table(File):
-    """A density over the sampled axes of a table, for every bin of its indexed axes.
+    """A pdf over the sampled axes of a table, for every bin of its indexed axes.
 
     `u` and points have a number a sampled axis. `index` has an integer a indexed axis, and is None where there is none; its
-    leading shape begins that of `u`. Points and densities are float64.
+    leading shape begins that of `u`. Points and pdfs are float64.
     """
 
     def sample(self, u: Any, index: Optional[Any] = None, *, out: Optional[Samples] = None) -> Samples:
-        """Samples points, in the units of the axes; the density is per product of those.
+        """Samples points, in the units of the axes; the pdf is per product of those.
 
         >>> import acdf, numpy as np
         >>> table = acdf.build_table(np.arange(1.0, 65.0).reshape(8, 8), ranges=[(0, 1), (0, 1)])
@@ -198,11 +198,11 @@ class Table(File):
         return Samples(*self._handle.sample(index, u, tuple(out or _NEW)))
 
     def pdf(self, x: Any, index: Optional[Any] = None, *, out: Optional[np.ndarray] = None) -> np.ndarray:
-        """Densities of points; 0 outside the axes and for NaN."""
+        """Pdfs of points; 0 outside the axes and for NaN."""
         return self._handle.pdf(index, x, out)
 
     def invert(self, x: Any, index: Optional[Any] = None) -> np.ndarray:
-        """The numbers u that sample each point; NaN where the density is 0."""
+        """The numbers u that sample each point; NaN where the pdf is 0."""
         return self._handle.invert(index, x)
 
 

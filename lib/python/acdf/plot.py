@@ -1,4 +1,4 @@
-"""Pictures of files for notebooks, by matplotlib. Each draws into `ax`, or into axes of its own, and returns them."""
+"""Pictures of files for notebooks, by matplotlib. Each plots into `ax`, or into axes of its own, and returns them."""
 
 from __future__ import annotations
 
@@ -29,24 +29,24 @@ def latlong_directions(height: int) -> np.ndarray:
     return np.stack([sine * np.cos(phi), sine * np.sin(phi), z], axis=-1).astype(np.float32)
 
 
-def density(file: Any, place: Optional[Any] = None, *, height: int = 256, ax: Any = None) -> Any:
-    """The density over the sphere in false colour, on a logarithmic scale: lat-long, +x in the middle, +z on top.
+def pdf(file: Any, condition: Optional[Any] = None, *, height: int = 256, ax: Any = None) -> Any:
+    """The pdf over the sphere in false colour, on a logarithmic scale: lat-long, +x in the middle, +z on top.
 
-    place: the normal of a LocalEnvironment, wo of a Brdf; (0, 0, 1) by default.
+    condition: the normal of a LocalEnvironment, wo of a Brdf; (0, 0, 1) by default.
     """
     directions = latlong_directions(height)
-    place = (0.0, 0.0, 1.0) if place is None else place
+    condition = (0.0, 0.0, 1.0) if condition is None else condition
     if isinstance(file, Environment):
         values = file.pdf(directions)
     elif isinstance(file, (LocalEnvironment, Brdf)):
-        values = file.pdf(place, directions)
+        values = file.pdf(condition, directions)
     else:
-        raise TypeError(f"{type(file).__name__}: only densities over the sphere are drawn so")
+        raise TypeError(f"{type(file).__name__}: only pdfs over the sphere can be plotted")
     ax = ax or matplotlib.pyplot.subplots(figsize=(8, 4))[1]
     largest = float(values.max())
     scale = matplotlib.colors.LogNorm(max(largest * 1e-6, float(values[values > 0].min())), largest)
     picture = ax.imshow(np.where(values > 0, values, np.nan), norm=scale, extent=(180, -180, -90, 90))
-    ax.figure.colorbar(picture, ax=ax, label="density, sr$^{-1}$", shrink=0.7)
+    ax.figure.colorbar(picture, ax=ax, label="pdf, sr$^{-1}$", shrink=0.7)
     ax.set(xlabel="azimuth, degrees", ylabel="elevation, degrees")
     return ax
 

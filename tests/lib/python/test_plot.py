@@ -22,15 +22,15 @@ class Pictures(unittest.TestCase):
         image = np.ones((16, 32))
         image[4, 8] = 100
         for file in (acdf.build_environment(image, cells=100), acdf.build_local(image, budget="64KiB")):
-            axes = acdf.plot.density(file, height=32)
+            axes = acdf.plot.pdf(file, height=32)
             acdf.plot.samples([[0, 0, 1], [1, 0, 0]], ax=axes)
             with tempfile.TemporaryDirectory() as folder:
-                path = os.path.join(folder, "density.png")
+                path = os.path.join(folder, "pdf.png")
                 axes.figure.savefig(path, dpi=40)
                 self.assertGreater(os.path.getsize(path), 1000)
             matplotlib.pyplot.close(axes.figure)
         with self.assertRaises(TypeError):
-            acdf.plot.density(acdf.build_table([1.0, 2.0]))
+            acdf.plot.pdf(acdf.build_table([1.0, 2.0]))
 
 
 @unittest.skipIf(matplotlib is not None, "matplotlib is installed")
