@@ -228,7 +228,7 @@ void add_size_options(CLI::App& command, TableArguments& options) {
 void add_mis_options(CLI::App& command, TableArguments& options) {
     command
         .add_option("--mis", options.other,
-                    "Another table of the same shape, which your renderer also samples, weighing both by multiple "
+                    "Another table of the same shape, which your renderer also samples, weighting both by multiple "
                     "importance sampling: within each bin its numbers are its pdf. The file's pdf is 0 where that "
                     "table alone is enough: never use such a file alone")
         ->type_name("")

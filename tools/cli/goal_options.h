@@ -53,7 +53,7 @@ inline void add_max_weight(CLI::App& command, double& max_weight, const char* be
     command
         .add_option(
             "--max-weight", max_weight,
-            std::string("No sample weighs more than W times the mean (largest f/p): no fireflies, at the price "
+            std::string("No sample has a weight above W times the mean (largest f/p): no fireflies, at the price "
                         "of some cells. It holds for whatever size is asked for, and fails where that is too "
                         "small") +
                 beyond)

@@ -35,7 +35,8 @@ constexpr Renderer known[] = {
      true,
      true,
      ACDF_HEURISTIC_POWER,
-     "its lights are given a normal (LightSampleContext), and its path integrator weighs a light and a BSDF sample "
+     "its lights are given a normal (LightSampleContext), and its path integrator weights a light and a BSDF "
+     "sample "
      "by "
      "the power heuristic (PathIntegrator::SampleLd)"},
     {"pbrt-v3",
@@ -45,7 +46,7 @@ constexpr Renderer known[] = {
      true,
      true,
      ACDF_HEURISTIC_POWER,
-     "its lights are given a normal (Interaction), and its integrators weigh a light and a BSDF sample by the "
+     "its lights are given a normal (Interaction), and its integrators weight a light and a BSDF sample by the "
      "power "
      "heuristic (EstimateDirect)"},
     {"mitsuba3",
@@ -55,7 +56,8 @@ constexpr Renderer known[] = {
      true,
      true,
      ACDF_HEURISTIC_POWER,
-     "its emitters are given a normal (Interaction3f), and its path integrator weighs an emitter and a BSDF sample "
+     "its emitters are given a normal (Interaction3f), and its path integrator weights an emitter and a BSDF "
+     "sample "
      "by "
      "the power heuristic (PathIntegrator::mis_weight)"},
     {"cycles",
@@ -65,7 +67,7 @@ constexpr Renderer known[] = {
      false,
      true,
      ACDF_HEURISTIC_POWER,
-     "its background light is given a position and no normal (background_light_sample), and it weighs a light and "
+     "its background light is given a position and no normal (background_light_sample), and it weights a light and "
      "a "
      "BSDF sample by the power heuristic (light_sample_mis_weight_nee)"},
     {"luxcore",
@@ -75,7 +77,7 @@ constexpr Renderer known[] = {
      true,
      true,
      ACDF_HEURISTIC_POWER,
-     "its lights are given the BSDF, which has a normal (InfiniteLight::Illuminate), and its path tracer weighs a "
+     "its lights are given the BSDF, which has a normal (InfiniteLight::Illuminate), and its path tracer weights a "
      "light "
      "and a BSDF sample by the power heuristic (PathTracer)"},
     {"three",
@@ -85,7 +87,7 @@ constexpr Renderer known[] = {
      false,
      true,
      ACDF_HEURISTIC_POWER,
-     "three-gpu-pathtracer samples the environment without a normal (sampleEquirectProbability), and weighs a "
+     "three-gpu-pathtracer samples the environment without a normal (sampleEquirectProbability), and weights a "
      "light and "
      "a BSDF sample by the power heuristic (misHeuristic)"},
     {"arnold", latlong(Wrap::repeat), usd, {}, false, false, ACDF_HEURISTIC_BALANCE, closed},
