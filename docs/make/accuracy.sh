@@ -132,7 +132,7 @@ e7_hidden() { scenes e7 16x16 16 e7-hidden; }
 hidden() {
     render hidden-grace hidden-grace 32x24
     echo
-    echo "The same pixels with nothing in the way:"
+    echo "The same pixels without occluders:"
     echo
     echo "| sampler | relative variance | gain, equal samples | gain, equal time |"
     echo "|---|---|---|---|"

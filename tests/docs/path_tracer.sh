@@ -29,4 +29,4 @@ awk '{ mean[NR] = $2; variance[NR] = $4 }
            if (!(variance[3] < variance[2] && variance[2] < variance[1] && variance[4] < 1.1 * variance[3])) exit 2 }' \
     cosine.txt environment.txt local.txt product.txt || { echo "means or variances are not what they have to be" >&2; exit 1; }
 if "$work/build/path_tracer" local environment.acdf sky.pfm out.pfm 4 16 2>refused; then exit 1; fi
-grep -q 'is no file for local' refused
+grep -q 'is not a file for local' refused

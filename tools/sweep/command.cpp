@@ -292,7 +292,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
         ->group("Sweep");
     command
         .add_option("--shadow-ray-ns", options.sweep.shadow_ray_ns,
-                    "Nanoseconds that a sample costs in your renderer beside its sampling: a shadow ray, a BRDF")
+                    "Nanoseconds that a sample costs in your renderer besides its sampling: a shadow ray, a BRDF")
         ->check(number_range(0.0, 1e9))
         ->option_text("X [500]")
         ->group("Sweep");

@@ -95,7 +95,7 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
     const char* what = sweep.kind == SweepKind::environment ? "of the light itself"
                        : sweep.kind == SweepKind::local ? "of what a diffuse surface reflects, mean over normals"
                        : sweep.kind == SweepKind::visibility
-                           ? "of what the scene reflects, with what it hides, mean over positions"
+                           ? "of what the scene reflects, with its occluders, mean over positions"
                            : "of what is reflected to a view, mean over views";
     const bool pictures = sweep.kind == SweepKind::environment;
     std::vector<Chart> out;

@@ -246,7 +246,7 @@ Statistics run(const std::string& sampler, const std::string& light, const std::
         return render(sky, LocalLight{file.local()}, samples, out);
     if (sampler == "product" && file.kind() == ACDF_KIND_LOCAL)
         return render(sky, ProductLight{file.local()}, samples, out);
-    throw std::runtime_error(light + ": is no file for " + sampler);
+    throw std::runtime_error(light + ": is not a file for " + sampler);
 }
 
 } // namespace
