@@ -132,7 +132,7 @@ ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
     f->lit |= (std::uint64_t)lanes(has(to_indices(light), 0xFFFF)) << at;
 }
 
-/* The same of a lane whose tile is a light: no row gives it any. */
+/* The same of a lane whose tile is a bright tile: no row gives it a probability. */
 ACDF_LANE void weigh_light(const AcdfLocal& local, std::size_t i, FastFinds* f) {
     const std::uint32_t k = f->cells.tile[i]->light - 1u;
     AcdfLocalPoint point;

@@ -118,8 +118,7 @@ template <bool Finds>
 __attribute__((noinline)) std::uint64_t take_turns(const AcdfLocal& local, const std::uint32_t (*square)[2],
                                                    LanesOnWay& on_way, CurveLane* lanes) {
     const std::uint8_t* const tree = local.blend.tree;
-    const std::size_t units =
-        local.environment.tree_units; /* what is loaded of a curve is not all there at the end */
+    const std::size_t units = local.environment.tree_units; /* a curve is not loaded in full at the end */
     const std::uint8_t* const near_end = tree + 2 * (units > 15 ? units - 15 : 0);
     std::uint64_t tilted = 0;
     while (const std::uint32_t count = on_way.count) {

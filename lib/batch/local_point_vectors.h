@@ -29,9 +29,9 @@ ACDF_LANE std::uint64_t not_served(const Corners& p, std::size_t first) {
 /// Of lanes that are not served the rows are some of the table, and all else is any number.
 template <bool Draws>
 struct Points : Corners {
-    static constexpr bool kEach = Draws; // whether they have the weight of each light
+    static constexpr bool kEach = Draws; // whether they have the weight of each bright tile
     Integer codes[kRows];                // addresses of those of the rows
-    Integer others; // of pdfs, in the lower halves: AcdfFacet::others, which sums leave out
+    Integer others;                      // of pdfs, in the lower halves: AcdfFacet::others, which sums leave out
     Vector bright_tiles, mixture, sum, light[Draws ? ACDF_MAX_BRIGHT_TILES : 1];
 };
 
@@ -97,7 +97,7 @@ ACDF_LANE void leave_others(const AcdfLocal& local, P* out) {
     out->others = of.others;
 }
 
-/* The weight of each light, as acdf_bright_tile_weight has it. The horizon cuts few bright tiles: those are weighed
+/* The weight of each bright tile, as in acdf_bright_tile_weight. The horizon cuts few of them: those are weighted
  * again. */
 ACDF_LANE void weigh_each(const AcdfLocal& local, Points<true>* out) {
     const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local.tables);

@@ -72,7 +72,7 @@ public:
     }
 };
 
-/// The alias method: the cell by one number, the choice by the other; what is left of each is where in the cell.
+/// The alias method: the cell by one number, the choice by the other; the rest of each is the position in the cell.
 class AliasSlices {
 public:
     explicit AliasSlices(const acdf::compress::Reflected& reflected) {

@@ -1,6 +1,6 @@
 // Timing on machines that others use too: short turns of each candidate, one after the other, by the processor time
-// of the thread. The result is the least of a candidate's turns; what was read or written between them is
-// everyone's; each round has another order, as who comes next to its like finds more in the caches.
+// of the thread. The result is the least of a candidate's turns; reads and writes between them are everyone's; each
+// round has another order, as who comes next to its like finds more in the caches.
 #pragma once
 
 #include <algorithm>

@@ -49,7 +49,7 @@ std::vector<ViewAccuracy> measure_views(const ViewPdf& density, const compress::
                                         const std::vector<compress::View>& views, std::uint32_t columns = 251,
                                         std::uint32_t rows = 601);
 
-/// `alike`: what is reflected to either side of each view is the same, as by all isotropic BRDFs with a mirror
+/// `alike`: both sides of each view reflect the same, as by all isotropic BRDFs with a mirror
 /// symmetry. Sums over files that have it, too, are then over one side.
 enum class Sides { any, alike };
 

@@ -149,7 +149,7 @@ Accuracy measure_alone(const EnvironmentView& environment, const Target& target)
     a.support_violations = sums.violations;
     a.rms_pdf_error = std::sqrt(std::max(0.0, sums.square_error.value()) / (4.0 * ACDF_PI));
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
-    const double least = least_second_moment(target); // what was summed is relative to it
+    const double least = least_second_moment(target); // the sums are relative to it
     a.least_variance = std::max(0.0, least - 1.0);
     a.relative_variance =
         sums.violations > 0 ? kInfinite : std::max(0.0, sums.variance.value() * least + (least - 1.0));

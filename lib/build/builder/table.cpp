@@ -12,7 +12,7 @@
 namespace acdf::builder {
 namespace {
 
-/// Those that the first axes make; what is beyond the most that there may be is refused later.
+/// The bins that the first axes make; more than the limit is refused later.
 std::uint64_t bin_count(const build::Array& array, std::uint32_t indexed) {
     constexpr std::uint64_t kMost = 1u << 28;
     std::uint64_t bins = 1;

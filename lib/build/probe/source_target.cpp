@@ -111,7 +111,7 @@ private:
     }
     bool keeps() const { return kept_.any() && source_.parts() == 1; } // else polygons would be needed, too
 
-    /// Each texel of the map is to hand out its own solid angle: what is covered is scaled by about 1. Returns how
+    /// Each texel of the map is to hand out its own solid angle: the covered part is scaled by about 1. Returns how
     /// much of the energy that moves.
     double scale_what_is_covered() {
         Sum missed, all;

@@ -48,7 +48,7 @@ public:
     /// `heaviest`. May be called again with smaller values; a part is divided in the same way whenever that
     /// happens. Returns whether any part was divided that was not before, be it that it has been forgotten since.
     ///
-    /// With `forgetting`, memory does not grow with all that is tried: what is forgotten is divided again when
+    /// With `forgetting`, memory does not grow with all that is tried: forgotten parts are divided again when
     /// refine is called again.
     bool refine(double finest, double heaviest, const Forgetting& forgetting = {});
     /// Forgets divisions that pay at no price from `price` on, but for parts with weights above `heaviest`.

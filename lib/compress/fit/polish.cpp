@@ -28,7 +28,7 @@ public:
         return std::sqrt((measure_[end] - measure_[begin]) * (energy_[end] - energy_[begin]));
     }
 
-    /// Without the rounding of prefix sums, in which what is faint beside the rest is lost.
+    /// Without the rounding of prefix sums, in which small terms beside large ones are lost.
     Moments moments(std::uint32_t begin, std::uint32_t end) const {
         Moments sum;
         const float* peaks = grid_.peaks ? grid_.peaks : grid_.values;

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kBoxes = 32;        // boxes divided at once: the same for any number of threads
 constexpr double kLeastSharedGain = 1e-9; // of the sum of costs, which is about 1: less is rounding
-// Of all cells that may be needed together. What is known of a cell at the border of what a row sees may be less
-// than what is there: a floor bounds the weights, at the price of this share of the samples at most.
+// A share of all cells that may be needed together. The known part of a cell at the border of what a row sees may
+// be less than what is there: a floor bounds the weights, at the price of this share of the samples at most.
 constexpr double kLeastShares = 2e-4;
 constexpr std::uint32_t kBisections = 60;
 

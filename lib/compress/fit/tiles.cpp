@@ -157,7 +157,8 @@ private:
         if (best.position == 0) return;
         const double worth = at(worth_.spread, box.begin[0], box.begin[1]);
         const double alarm = worth > 0.0 ? all.flux / worth * at(worth_.alarm, box.begin[0], box.begin[1]) : 0.0;
-        // A light that crosses the horizon may sample in vain as it does between bins, over its radius instead.
+        // A bright tile that crosses the horizon may sample in vain as it does between bins, over its radius
+        // instead.
         const double reach = radius(target_, box);
         if (alarm > rule_.alarm) {
             nodes_[index].light = reach <= rule_.radius;

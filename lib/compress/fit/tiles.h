@@ -23,7 +23,7 @@ struct TileTree {
     };
     std::vector<Split> splits;
     std::vector<Box> tiles;         ///< one more than splits
-    std::uint32_t bright_tiles = 0; ///< tiles of light bright enough for a light, and small enough
+    std::uint32_t bright_tiles = 0; ///< tiles that are bright and small enough for a bright tile
 };
 
 /// Numbers on a coarse grid of the target's parameterization.
@@ -52,14 +52,14 @@ struct Worth {
 /// Which tiles become bright tiles.
 struct BrightTileRule {
     double alarm = 0.002; ///< those whose light could sample more by mistake
-    double radius = 0.03; ///< radians; a light is no larger
+    double radius = 0.03; ///< radians; a bright tile is no larger
     bool few = false;     ///< bright tiles are not divided further; else they are the smaller the brighter they are
 };
 
 /// Divides a probe (rows theta, columns phi, or v and u) into at most `count` tiles. Each split is the one that
 /// lowers most the sum over tiles of the light's angular variance, ∫ w L |omega - mean|^2 with w = worth.spread: to
 /// first order, what the cosine to a normal adds to the variance within a tile. Tiles of bright light that are too
-/// large for a light come first.
+/// large for a bright tile come first.
 TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count,
                       const BrightTileRule& rule = {});
 

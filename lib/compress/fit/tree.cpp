@@ -112,7 +112,7 @@ private:
         return out;
     }
 
-    /// What is not made here is made of the same trees as one of `known`.
+    /// Trees that are not made here are those of one of `known`.
     Trial at(double price, const std::vector<const Trial*>& known = {}) {
         Trial out;
         out.price = price;

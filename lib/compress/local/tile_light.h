@@ -16,7 +16,7 @@ namespace acdf::compress {
 
 /// What a normal sees of each tile.
 struct TileView {
-    std::vector<double> cost;   ///< 0: a light, dark, or hidden
+    std::vector<double> cost;   ///< 0: a bright tile, dark, or hidden
     std::vector<double> hidden; ///< of the samples within the tile: the share below the horizon
 };
 
@@ -44,7 +44,7 @@ private:
     struct Tile {
         Direction centre{};
         double reach = 0.0;             ///< of any direction in it, from its centre
-        double cost = 0.0;              ///< of all its light, whatever the cosine; 0: a light, or dark
+        double cost = 0.0;              ///< of all its light, whatever the cosine; 0: a bright tile, or dark
         double amount = 0.0;            ///< of all its points
         std::array<double, 6> moment{}; ///< sums over points of amount times xx, yy, zz, 2 xy, 2 yz, 2 zx
         std::vector<LightPoint> points;

@@ -205,7 +205,7 @@ void fill(Target& target, const std::vector<float>& density, double nu) {
     });
 }
 
-/// The same light times a power of two, so that the brightest texel has from 1/2 to 1: what is computed from it is
+/// The same light times a power of two, so that the brightest texel has from 1/2 to 1: results from it are
 /// in the range of floats. Pdfs do not change.
 Target in_range(Target target) {
     target.mean_square = 0.0;

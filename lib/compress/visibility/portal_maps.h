@@ -37,7 +37,7 @@ struct PortalSet {
 
 /// Maps of the light of `target`, a probe; those of portals that face the same way are one. They take `bytes` at
 /// most, as far as that can be. The same for any number of threads. Throws std::invalid_argument where a rectangle
-/// is none, or no light shines on it from outside, and where there are more than ACDF_MAX_PORTALS.
+/// is none, or no light reaches it from outside, and where there are more than ACDF_MAX_PORTALS.
 PortalSet make_portals(const Target& target, const std::vector<PortalRectangle>& rectangles, std::uint64_t bytes);
 
 } // namespace acdf::compress

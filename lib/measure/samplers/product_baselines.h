@@ -16,7 +16,7 @@ namespace acdf::measure {
 /// sampling (ResamplingEstimator). Both must outlive it.
 std::unique_ptr<LightSampler> half_and_half(const LightSampler& a, const LightSampler& b);
 
-/// Tiles of a probe, weighed at each point by their light times BRDF times cosine at their middles, the full CDF
+/// Tiles of a probe, weighted at each point by their light times BRDF times cosine at their middles, the full CDF
 /// inside (after Conty Estevez and Lecocq, "Fast Product Importance Sampling of Environment Maps", SIGGRAPH Talks
 /// 2018): a tile has the weight flux * (BRDF * cosine + a twentieth of the mean of that over the light). Their
 /// combination with the BRDF's own sampler is for MisEstimator. `brdf` is a BRDF file. Throws std::invalid_argument

@@ -11,7 +11,7 @@
 
 namespace acdf::measure {
 
-/// One sampler, or several that are weighed by the balance heuristic. Referred to.
+/// One sampler, or several that are weighted by the balance heuristic. Referred to.
 struct SamplerParts {
     struct Part {
         std::vector<const LightSampler*> of_material;

@@ -8,13 +8,13 @@
 extern "C" {
 #endif
 
-/* Weight of a light: its share times the mean over it of the cosine above the horizon. It is taken as spread evenly
- * from -radius to radius around its middle, so that no weight is 0 where any of it can be seen. */
+/* Weight of a bright tile: its share times the mean over it of the cosine above the horizon. It is taken as spread
+ * evenly from -radius to radius around its middle, so that no weight is 0 where any of it can be seen. */
 ACDF_INLINE double acdf_cap_weight(const AcdfLocalPoint* point, double x, double y, double z, double radius,
                                    double share) {
     const double height = point->normal[0] * x + point->normal[1] * y + point->normal[2] * z;
     radius *= point->length;
-    /* The horizon rarely cuts a light, and whether one is above it is not to be guessed: no branch. */
+    /* The horizon rarely cuts a bright tile, and whether one is above it cannot be predicted: no branch. */
     if (fabs(height) < radius) return share * ((height + radius) * (height + radius) / (4.0 * radius));
     return share * (0.5 * (height + fabs(height))); /* 0 below, exactly the height above */
 }

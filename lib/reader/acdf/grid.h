@@ -1,5 +1,5 @@
 /* The grid of directions that the positions of a file lie on: lat-long (acdf/sphere.h) or the octahedral square
- * (acdf/octahedral.h). What is sampled, searched and weighed on both. */
+ * (acdf/octahedral.h). What is sampled, searched and weighted on both. */
 #ifndef ACDF_GRID_H
 #define ACDF_GRID_H
 

@@ -68,7 +68,7 @@ ACDF_INLINE uint32_t acdf_local_fast_passed(const AcdfLocalPoint* point, double 
 #endif
 }
 
-/* The number of a light that the normal may see. */
+/* The number of a bright tile that the normal may see. */
 ACDF_INLINE uint32_t acdf_local_lit(const AcdfLocalPoint* point, uint32_t i) {
     return 2u * point->pair[i / 2] + i % 2;
 }
@@ -141,8 +141,8 @@ ACDF_INLINE AcdfSampledBrightTile acdf_local_facet_bright_tile(const AcdfLocal* 
     return out;
 }
 
-/* The light that x of the sum of weights samples at a point, of which none is known but a facet if `weighed` is 0;
- * what is left of x as a number in [0, 1]. */
+/* The bright tile that x of the sum of weights samples at a point, of which none is known but a facet if `weighed`
+ * is 0; what is left of x as a number in [0, 1]. */
 ACDF_INLINE AcdfSampledBrightTile acdf_local_sample_fast_bright_tile(const AcdfLocal* local,
                                                                      const AcdfLocalPoint* point, const int weighed,
                                                                      double x, double* u) {
@@ -158,7 +158,7 @@ ACDF_INLINE AcdfSampledBrightTile acdf_local_sample_fast_bright_tile(const AcdfL
 }
 
 /* Samples a cell; u and range as in acdf_tree_sample. Returns its probability. `weighed`: whether the point has the
- * weight of each light, or a facet. */
+ * weight of each bright tile, or a facet. */
 ACDF_INLINE AcdfFastShare acdf_local_fast_sample_cell(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                       const int weighed, double* u, AcdfRange* range) {
     const double x = u[0] * point->sum;
@@ -182,7 +182,7 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_sample_cell(const AcdfLocal* local, co
     return share;
 }
 
-/* The weight of the light that has a number and 1; of 0 of any. Without tables points have all. */
+/* The weight of bright tile `number` - 1; for 0 that of any. Without tables points have all. */
 ACDF_INLINE double acdf_local_fast_bright_tile_of(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                   uint32_t light) {
     const uint32_t k = light - (uint32_t)(light > 0);

@@ -80,7 +80,7 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
     return 1;
 }
 
-/* Weighs bright tiles and mixture together; `visible`: what of each light arrives, null: all. */
+/* Weights bright tiles and mixture together; `visible`: the visible share of each bright tile, null: all. */
 ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, AcdfLocalPoint* out) {
     uint32_t k;
     if (out->facet && !visible) out->bright_tiles = acdf_facet_bright_tiles(local, out);
@@ -146,7 +146,7 @@ ACDF_FN void acdf_local_at_position(const AcdfLocal* local, const float position
                                 &out->visible_portals);
 }
 
-/* Whether u0 in [0, 1] samples from the mixture, not a light. */
+/* Whether u0 in [0, 1] samples from the mixture, not a bright tile. */
 ACDF_FN int acdf_local_samples_mixture(const AcdfLocalPoint* point, double u0) {
     return !(u0 * point->sum < point->bright_tiles || point->mix.count == 0);
 }
@@ -174,7 +174,7 @@ ACDF_FN const AcdfBrightTile* acdf_local_sample_bright_tile(const AcdfLocal* loc
     u[0] = acdf_unit_interval(x / *weight);
     return light;
 }
-/* The box of a tile that has a light. */
+/* The box of a bright tile. */
 ACDF_INLINE void acdf_light_range(const AcdfBrightTile* light, AcdfRange* range) {
     int axis;
     for (axis = 0; axis < 2; ++axis) {
@@ -201,7 +201,7 @@ ACDF_FN double acdf_local_tile_probability(const AcdfLocal* local, const AcdfLoc
     uint32_t light;
     double probability;
     if (of_mixture > 0.0) return acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * of_mixture);
-    light = acdf_local_bright_tile_of(local, tile); /* no row gives a light any probability */
+    light = acdf_local_bright_tile_of(local, tile); /* no row gives a bright tile any probability */
     if (light == 0) return 0.0;
     probability = acdf_local_bright_tile_weight(local, point, light - 1) / point->sum;
     return probability > 0.0 ? acdf_positive(probability) : 0.0;

@@ -44,7 +44,7 @@ ACDF_FN double acdf_visibility_of_code(uint8_t code) {
     return out;
 }
 
-/* Number `index` of a row: 0 is the mixture, 1 + k light k. */
+/* Number `index` of a row: 0 is the mixture, 1 + k bright tile k. */
 ACDF_FN double acdf_mixture_visibility(const AcdfVisibilityMixture* mixture, uint32_t index) {
     double sum = 0.0;
     int i;

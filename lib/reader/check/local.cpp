@@ -57,7 +57,7 @@ void check_local_axes(const Payload& payload, Report& report, const Parts& parts
                    d.bin_count, static_cast<ull>(bins));
 }
 
-// What is wrong with a light; null if nothing.
+// The fault of a bright tile; null if none.
 const char* bright_tile_fault(const AcdfBrightTile& light, const TileBox& box) {
     double square = 0.0;
     for (float x : light.direction) square += static_cast<double>(x) * static_cast<double>(x);
@@ -101,7 +101,7 @@ u32 path_to(const AcdfBrightTile& light, const Parts& parts, Step path[ACDF_MAX_
     return count;
 }
 
-// Whether a row gives nothing to a light, by the splits on its path.
+// Whether a row gives nothing to a bright tile, by the splits on its path.
 struct DarkBySplits {
     const Parts& parts;
     Step path[ACDF_MAX_SPLITS_DEEP];
@@ -134,7 +134,7 @@ struct DarkBySums {
     }
 };
 
-// Light is sampled as a light or in the mixture, but not both.
+// Light is sampled as a bright tile or in the mixture, but not both.
 template <class Dark>
 void check_bright_tile_rows(const Payload& payload, Report& report, const Parts& parts) {
     const u32 bins = parts.bins ? parts.description->bin_count : 0;

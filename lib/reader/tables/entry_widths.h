@@ -24,8 +24,8 @@ struct EntryWidths {
     }
 };
 
-/// Finds them. Logarithms are linear between powers of two. How a few cells divide what is above them is not looked
-/// at: each axis as much as the others, but that of a curve without children.
+/// Finds them. Logarithms are linear between powers of two. How a few cells divide the cells above them is not
+/// looked at: each axis as much as the others, but that of a curve without children.
 class EntryWidthsFinder {
 public:
     /// `survey`: of the tree; where it is not done, all cells are looked at.

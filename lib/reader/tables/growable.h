@@ -1,5 +1,4 @@
-// An array that grows without exceptions. `failed` says that memory could not be had; what is added then is
-// lost.
+// An array that grows without exceptions. `failed` says that memory could not be had; additions are then lost.
 #pragma once
 
 #include "tables/scratch.h"

@@ -151,7 +151,7 @@ std::size_t facet_words(const AcdfLocal& local) {
     return n > 0 && n <= kMostSubdivisions ? whole_lines(8 * n * n * sizeof(AcdfFacet) / 4) : 0;
 }
 
-// Where normals between three corners see a light: 1 above all their horizons, -1 below all, 0 neither.
+// Where normals between three corners see a bright tile: 1 above all their horizons, -1 below all, 0 neither.
 int side_of(const AcdfBrightTile& light, const double (*corner)[3]) {
     double least = 1e300, most = -1e300, length = 0.0;
     for (int i = 0; i < 3; ++i) {

@@ -23,7 +23,7 @@ struct Scratch::Block {
     char* at(std::size_t used) { return reinterpret_cast<char*>(this) + used; }
 };
 
-// It begins with a large page; what is before that is never used.
+// It begins with a large page; the bytes before it are never used.
 bool Scratch::take(std::size_t bytes) noexcept {
     const std::size_t head = scratch_lines(sizeof(Block)), least = 3 * kLargePage;
     if (bytes > SIZE_MAX / 2) return false;

@@ -80,7 +80,7 @@ struct Weighed {
 
 TEST(WithinWeight, TightensAsLongAsItHelps) {
     int builds = 0;
-    const auto half_more = [&](double bound) { // what is measured is half more than what the fit knows of
+    const auto half_more = [&](double bound) { // the measured weight is half more than the fit finds
         ++builds;
         return Weighed{{1.5 * bound}};
     };

@@ -160,7 +160,7 @@ TEST(Product, SeveralSamplesAreThoseOfSingleCalls) {
 #endif
 }
 
-// What no part or row gives anything, and what is so small that it is no normal number.
+// What no part or row gives anything, and values that are denormal.
 TEST(Product, SeveralSamplesOfFaintPartsAreThoseOfSingleCalls) {
     std::mt19937_64 rng(5);
     const TestLobe lobe{0.1};

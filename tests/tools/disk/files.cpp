@@ -76,7 +76,7 @@ TEST_F(Disk, fullDeviceIsAnError) {
     }
 }
 
-// What is opened next must not take their place: messages would go into it.
+// The next file must not get their descriptors: messages would go into it.
 TEST_F(Disk, closedStreamsGetNoOutput) {
     const std::string map = folder / "sky.pfm", whole = folder / "whole.acdf", made = folder / "made.acdf";
     write_float_map(map, 4, 2, std::vector<float>(24, 1.0f));

@@ -155,7 +155,7 @@ TEST(MeshVisibility, OfMeshesWithYUpAreThoseOfTheirOwnCoordinates) {
         const AcdfLocalPoint a = z.local().at(p, n), b = y.local().at(turned, n);
         ASSERT_GT(a.visibility.count, 0);
         const DirectionSample s = z.local().sample(a, i / 200.0, 0.3), t = y.local().sample(b, i / 200.0, 0.3);
-        // Sums over what is seen are rounded in another order: a share of a row may be a step off.
+        // Sums over visible light are rounded in another order: a share of a row may be a step off.
         EXPECT_NEAR(s.pdf, t.pdf, 1e-5f * s.pdf);
         for (int k = 0; k < 3; ++k) EXPECT_EQ(s.direction[k], t.direction[k]);
     }

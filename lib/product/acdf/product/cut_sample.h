@@ -218,7 +218,7 @@ ACDF_FN const AcdfCutPart* acdf_cut_choose_part(const AcdfCut* cut, double u[2])
     return acdf_cut_sample_guessed(cut, number, u);
 }
 
-/* Whether u0 in [0, 1] samples a light of a part, not from its mixture. */
+/* Whether u0 in [0, 1] samples a bright tile of a part, not from its mixture. */
 ACDF_INLINE int acdf_cut_samples_bright_tile(const AcdfCutPart* part, double u0) {
     return (part->bright_tiles > 0.0) & ((u0 * part->sum < part->bright_tiles) | !(part->sum > part->bright_tiles));
 }
@@ -276,7 +276,7 @@ ACDF_FN double acdf_cut_found_probability(const AcdfLocal* local, const AcdfCut*
     uint32_t light = part->first_light;
     if (!(part->probability > 0.0)) return 0.0;
     if (inside > 0.0) return acdf_cut_tile_probability(part, mix, inside);
-    /* No row gives a light any probability. */
+    /* No row gives a bright tile any probability. */
     while (light < part->end_light && local->bright_tiles[light].tile < tile) ++light;
     if (light == part->end_light || local->bright_tiles[light].tile != tile || !(cut->light[light] > 0.0))
         return 0.0;

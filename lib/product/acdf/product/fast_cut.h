@@ -1,4 +1,4 @@
-/* A cut of local environment maps of the fast shape (acdf/fast.h): each light and each group of tiles has a
+/* A cut of local environment maps of the fast shape (acdf/fast.h): each bright tile and each group of tiles has a
  * probability of its own, and in some groups each tile. What product sampling weighs at a shading point
  * (acdf/product/product.h). One freestanding header over acdf/local.h, valid C99, C++17 and CUDA/HIP/SYCL.
  *

@@ -48,7 +48,7 @@ struct LobeGuides {
     }
 };
 
-/// What is known of a part while the cut is made.
+/// Estimates of a part while the cut is made.
 struct PartRating {
     std::uint32_t tile;   ///< of the part's heart
     std::uint32_t guides; ///< which of them lie in the part, a bit each
@@ -59,7 +59,7 @@ struct PartRating {
     float around; ///< of what value it may be, estimated from its parents and siblings
     float spread; ///< relative square of how much the value changes across it
 
-    /// Mean and mass, from the heart, which stands for the whole part, and the guides in it: weighed as two
+    /// Mean and mass, from the heart, which stands for the whole part, and the guides in it: weighted as two
     /// samplers' samples are by the balance heuristic.
     ACDF_METHOD void rate(const LobeGuides& all) noexcept {
         const float expected = solid_angle * static_cast<float>(all.sampled); // over the pdf: guides in it
@@ -148,7 +148,7 @@ ACDF_METHOD double weigh_parts(int count, const LobeGuides& guides, double least
     return share;
 }
 
-/// The parts of a cut, to be weighed.
+/// The parts of a cut, to be weighted.
 struct CutParts {
     const AcdfCut& cut;
     const PartRating* ratings;

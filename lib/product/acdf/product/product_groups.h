@@ -69,7 +69,7 @@ private:
     int open_ = 0, opened_[ACDF_FAST_CUT_OPEN]; ///< parts that are groups whose tiles are looked at
     std::uint16_t entry_[most_parts + 1], part_of_[most_parts]; ///< of a part in the cut, and of that
     LobeGuides guides_;
-    int guide_tile_[LobeGuides::most]; ///< no_tile: a light's
+    int guide_tile_[LobeGuides::most]; ///< no_tile: a bright tile's
     float light_in_[most + 8], solid_angle_[most + 8], value_[most + 8], pdf_[most + 8], mean_[most + 8],
         mass_[most + 8], around_[most + 8], spread_[most + 8];
 };

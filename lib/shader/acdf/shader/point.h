@@ -45,7 +45,7 @@ ACDF_FN1(AcdfShaderPoint, acdf_point_anywhere, ACDF_TABLES, tables) {
     return acdf_point_of_tree(ACDF_WORD(tables, ACDF_WALK_ENVIRONMENT));
 }
 
-/* Weight of light k: acdf_cap_weight of acdf/local_point.h. */
+/* Weight of bright tile k: acdf_cap_weight of acdf/local_point.h. */
 ACDF_FN3(ACDF_F32, acdf_point_bright_tile, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_U32, k) {
     ACDF_LET(ACDF_U32, light) = ACDF_WORD(tables, ACDF_WALK_BRIGHT_TILES) + 8u * k;
     ACDF_LET(ACDF_F32, height) =

@@ -116,7 +116,7 @@ ACDF_FN3(AcdfVector, acdf_walk_cosine, AcdfShaderPoint, here, ACDF_F32, u0, ACDF
     return d;
 }
 
-/* Samples a light: its link becomes the end's leaf. */
+/* Samples a bright tile: its link becomes the end's leaf. */
 ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_bright_tile, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers,
          numbers) {
     ACDF_VAR(AcdfWalkEnd, end);
@@ -145,7 +145,7 @@ ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_bright_tile, ACDF_TABLES, tables, AcdfSha
     return end;
 }
 
-/* Samples by bright tiles and rows: where a traversal ends; of the fast shape the tile of a light, or
+/* Samples by bright tiles and rows: where a traversal ends; of the fast shape a bright tile, or
  * ACDF_WALK_ON_GRIDS. */
 ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_row, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
     ACDF_VAR(AcdfWalkNumbers, left) = numbers;

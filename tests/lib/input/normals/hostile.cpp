@@ -19,7 +19,7 @@ namespace {
 using namespace acdf::input;
 using namespace acdf::test;
 
-/// The message that reading `path` throws; "" where it is read, and what was read is sound.
+/// The message that reading `path` throws; "" where it is read, and the result is sound.
 std::string scene_refusal(const std::string& path) {
     try {
         const SceneNormals scene = read_scene_normals(path);

@@ -233,7 +233,7 @@ TEST(InputFiles, AlphaIsIgnored) {
     for (std::size_t i = 0; i < 32 * 16; ++i) rgba.insert(rgba.end(), {0.5f, 0.5f, 0.5f, i < 256 ? 0.0f : 0.5f});
     write_rgb(folder / "plain.png", {32, 16, std::vector<float>(32 * 16 * 3, 0.5f)}, OIIO::TypeDesc::UINT8);
     OIIO::ImageSpec spec(32, 16, 4, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:UnassociatedAlpha", 1); // what is written is not multiplied by it
+    spec.attribute("oiio:UnassociatedAlpha", 1); // pixels are written without multiplication by it
     for (const char* name : {"a.png", "a.tif"}) {
         write_image(folder / name, spec, rgba);
         EXPECT_EQ(read_probe(folder / name).rgb, read_probe(folder / "plain.png").rgb) << name;

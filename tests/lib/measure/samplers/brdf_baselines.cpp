@@ -39,7 +39,7 @@ BrdfAccuracy accuracy_of(const Sampler& sampler, const Reflected& light, const s
                                  views, columns, rows));
 }
 
-/// Whether what is reflected is looked up for one pdf, for several, or once for a search.
+/// Whether reflected light is looked up for one pdf, for several, or once for a search.
 TEST(MeasureBrdfBaselines, VariancesAreTheSameHoweverLightIsLookedUp) {
     const auto brdf = acdf::input::model_brdf("ggx:alpha=0.3");
     const Reflected light = light_of(*brdf);

@@ -191,8 +191,8 @@ double exact_variance(const acdf::measure::LightSampler& sampler, const LocalMap
     return mean > 0.0 ? squares / (mean * mean) - 1.0 : 1.0;
 }
 
-// Geometric means over points, where groups of tiles are weighed: of few parts beside light and BRDF half and half,
-// and of many beside few.
+// Geometric means over points, where groups of tiles are weighted: of few parts beside light and BRDF half and
+// half, and of many beside few.
 TEST(Product, WeighingGroupsAndOpeningThemIsLessNoise) {
     ACDF_NOT_SANITIZED();
     constexpr int kPoints = 24;
