@@ -41,7 +41,7 @@ std::string sentence_of(const Sweep& sweep, const SituationAdvice& s) {
     if (s.lit.sobol == s.lit.sobol)
         text += ", " + noise_text(s.lit.sobol, sweep.visible.spp) + " at " + std::to_string(sweep.visible.spp) +
                 " samples of a scrambled Sobol' sequence";
-    const char* after = sweep.timed ? "After the same time: " : "After the same samples: ";
+    const char* after = sweep.timed ? "At equal time: " : "At equal samples: ";
     text += std::string(". ") + after + noise_ratio_text(s.over_reference.value) + " the " + base.label;
     if (!s.has_baseline) return text + ".";
     const bool even = s.over_best_baseline.low < 1.0 && s.over_best_baseline.high > 1.0;
