@@ -151,12 +151,12 @@ TEST_F(Hostile, InputsWithoutAnEnd) {
 TEST_F(Hostile, RadianceBeyondFloatsIsReportedWithItsFile) {
     const std::string bright = folder / "bright.pfm";
     std::ofstream(bright, std::ios::binary) << "PF\n2 1\n-1.0\n" << std::string(24, '\x7F'); // 3.4e38 each
-    expect_failure({"env", bright, "--channel", "rgb", "-o", file}, 1, "bright.pfm: radiance");
+    expect_failure({"env", bright, "--channel", "rgb", "-o", file}, 1, "bright.pfm: the channels of the radiance");
     std::ofstream(bright, std::ios::binary) << "PF\n1 1\n-1.0\n" << std::string(12, '\x7F');
     for (const char* projection : {"angular", "octahedral"})
         expect_failure(
             {"env", bright, "--channel", "rgb", "--domain", "octahedral", "--projection", projection, "-o", file},
-            1, "bright.pfm: radiance");
+            1, "bright.pfm: the channels of the radiance");
 }
 
 TEST_F(Hostile, ReportsOfFilesWithoutVarianceHaveNumbersAlone) {

@@ -160,11 +160,12 @@ TEST_F(LocalCommands, WhatDoesNotFitIsRefused) {
     expect_refused({"sample", shared, "-n", "1", "--normal", "0,1"}, 2, "--normal");
     expect_refused({"sample", shared, "-n", "1", "--normal", "0,0,1", "--at", "1"}, 1, "--at");
     expect_refused({"sample", grid, "-n", "1", "--normal", "1,0,-0.1"}, 1, "no light reaches this normal");
-    expect_refused({"sample", environment, "-n", "1", "--normal", "0,0,1"}, 1, "no local environment");
-    expect_refused({"pdf", environment, "--normal", "0,0,1"}, 1, "no local environment");
+    expect_refused({"sample", environment, "-n", "1", "--normal", "0,0,1"}, 1, "not a local environment");
+    expect_refused({"pdf", environment, "--normal", "0,0,1"}, 1, "not a local environment");
     expect_refused({"plot", shared, "-o", folder / "x.exr"}, 1, "--normal X,Y,Z");
     expect_refused({"plot", shared, "-o", folder / "x.png", "--projection", "hemisphere"}, 2, "BRDF");
-    expect_refused({"plot", environment, "-o", folder / "x.png", "--normal", "0,0,1"}, 1, "no local environment");
+    expect_refused({"plot", environment, "-o", folder / "x.png", "--normal", "0,0,1"}, 1,
+                   "not a local environment");
 }
 
 // ---- plots ---------------------------------------------------------------------------------------------

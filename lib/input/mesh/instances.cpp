@@ -44,7 +44,7 @@ std::vector<Instances> read_instances(const std::string& path) {
         const char* at = line.begin;
         const int count = read_numbers(at, line.end, numbers, 12);
         const std::string name = rest_of(at, line.end);
-        if (count != 12 || name.empty()) throw fail(std::string("is no ") + form);
+        if (count != 12 || name.empty()) throw fail(std::string("is not an ") + form);
         for (std::size_t i = 0; i < 12; ++i) placement.rows[i / 4][i % 4] = numbers[i];
         if (!is_sound(placement)) throw fail("makes its mesh flat, or larger than 1e15");
         const std::string mesh = (std::filesystem::path(path).parent_path() / name).string();

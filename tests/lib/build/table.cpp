@@ -340,7 +340,7 @@ TEST(TableFit, OptionsThatDoNotFit) {
     input::NpyArray huge = noisy_array({4, 5}, 1);
     huge.scale = 0x1p1020;
     std::fill(huge.values.begin(), huge.values.end(), 1e5f);
-    expect_refused(huge, {}, "no number that a double holds");
+    expect_refused(huge, {}, "not a number that a double holds");
 }
 
 } // namespace

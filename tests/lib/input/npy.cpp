@@ -196,8 +196,8 @@ TEST(Npy, DamagedHeaders) {
 }
 
 TEST(Npy, OtherFiles) {
-    EXPECT_CONTAINS(refusal(""), "no .npy file");
-    EXPECT_CONTAINS(refusal("1,2,3\n"), "no .npy file");
+    EXPECT_CONTAINS(refusal(""), "not an .npy file");
+    EXPECT_CONTAINS(refusal("1,2,3\n"), "not an .npy file");
     EXPECT_CONTAINS(refusal("PK\x03\x04 and so on"), "archive");
     std::string version = npy_file(six, {6});
     version[6] = 4;

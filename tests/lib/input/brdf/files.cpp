@@ -118,7 +118,7 @@ TEST(InputBrdfFiles, AreRecognisedByWhatTheyHold) {
     write_text(folder / "text.binary", "Dear sir,\nthis is not a BRDF.\n");
     EXPECT_REFUSED(open_brdf(folder / "text.binary"), "a MERL file has 90 x 90 x 180");
     write_text(folder / "text.bsdf", "Dear sir");
-    EXPECT_REFUSED(open_brdf(folder / "text.bsdf"), "no tensor file");
+    EXPECT_REFUSED(open_brdf(folder / "text.bsdf"), "not a tensor file");
     write_text(folder / "text.npy", "Dear sir");
     EXPECT_REFUSED(open_brdf(folder / "text.npy"), "text.npy");
     write_text(folder / "text.txt", "Dear sir");

@@ -311,7 +311,7 @@ TEST(InputBrdfRgl, HostileHeadersAreRefused) {
         file[at] = value;
         return file;
     };
-    EXPECT_REFUSED(parse(patched(0, 'T')), "no tensor file");
+    EXPECT_REFUSED(parse(patched(0, 'T')), "not a tensor file");
     EXPECT_REFUSED(parse(patched(12, 2)), "version 2.0");
     EXPECT_REFUSED(parse(patched(13, 7)), "version 1.7");
     EXPECT_REFUSED(parse(patched(16, 1)), "fields"); // 65,546 of them
