@@ -1,7 +1,7 @@
 /* The fast shape of a local environment map (SPEC.md §10.6): rows of cumulative sums over tiles, and a
- * regular grid of cells in each tile. What a sample and a density read lies where it is known beforehand, and is
- * searched by vectors: no walk, no branch on the data. Part of acdf/local.h; freestanding, valid C99, C++17 and
- * CUDA/HIP/SYCL.
+ * regular grid of cells in each tile. What a sample and a pdf read lies where it is known beforehand, and is
+ * searched by vectors: no traversal, no branch on the data. Part of acdf/local.h; freestanding, valid C99, C++17
+ * and CUDA/HIP/SYCL.
  *
  * All that decides which tile is sampled, and with which probability, are integers: so samples and pdfs agree
  * to the last bit, with vectors or without. */
