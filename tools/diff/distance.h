@@ -13,8 +13,8 @@ namespace acdf::tools {
 struct Distance {
     std::size_t conditions = 0;     ///< normals, views or bins that were compared; 1: none to choose
     double mean = 0.0, worst = 0.0; ///< over conditions: the share of samples that fall elsewhere (total variation)
-    double largest_ratio = 1.0; ///< of the two pdfs, wherever samples of either fall; infinite where one is 0
-    double total = 0.0;         ///< of the two integrals: what they differ by, over the larger one
+    double largest_ratio = 1.0;     ///< of the two pdfs, wherever samples of either fall; infinite where one is 0
+    double total = 0.0;             ///< of the two integrals: what they differ by, over the larger one
 };
 
 /// Why pdfs of the two cannot be compared: another kind or number of axes, visibility cells. Empty: they can
