@@ -9,6 +9,7 @@
 #include "build/text/partner.h"
 #include "build/weight_bound.h"
 #include "compress/local/fit.h"
+#include "compress/visibility/portal_sides.h"
 
 #include <algorithm>
 #include <cmath>
@@ -451,9 +452,10 @@ std::string option_text(const std::string& reading, const LocalOptions& o) {
     return o.fit.epsilon > 0.0 ? text + " --eps " + option_number(o.fit.epsilon) : text;
 }
 
-Local build_local(const compress::Target& target, const Source& source, const LocalOptions& options,
-                  const Progress& progress) {
-    if (!compress::has_energy(target)) throw NoEnergy("a target without energy");
+namespace {
+
+Local build_to_goal(const compress::Target& target, const Source& source, const LocalOptions& options,
+                    const Progress& progress) {
     if (!options.sharing) return build_separate(target, source, options, progress);
     Tried tried(target);
     switch (options.goal.kind) {
@@ -473,6 +475,18 @@ Local build_local(const compress::Target& target, const Source& source, const Lo
         });
     }
     }
+}
+
+} // namespace
+
+Local build_local(const compress::Target& target, const Source& source, const LocalOptions& options,
+                  const Progress& progress) {
+    if (!compress::has_energy(target)) throw NoEnergy("a target without energy");
+    if (options.visibility.portals.empty()) return build_to_goal(target, source, options, progress);
+    LocalOptions facing = options; // checked first: building takes long
+    facing.visibility.portals =
+        compress::facing_light(target, options.visibility.portals, options.visibility.scene);
+    return build_to_goal(target, source, facing, progress);
 }
 
 } // namespace acdf::build

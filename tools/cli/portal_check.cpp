@@ -37,13 +37,18 @@ struct Window {
             across[k] = turned(portal.across);
             up[k] = turned(portal.up);
         }
-        if (builder::mirrors(transform)) std::swap(across, up);
         outside = {across[1] * up[2] - across[2] * up[1], across[2] * up[0] - across[0] * up[2],
                    across[0] * up[1] - across[1] * up[0]};
         const double length = std::hypot(outside[0], outside[1], outside[2]);
         for (double& x : outside) x /= length;
     }
 
+    /// The other way round: light comes from either side (lib/compress/visibility/portal_sides.h).
+    Window turned() const {
+        Window out = *this;
+        for (double& x : out.outside) x = -x;
+        return out;
+    }
     Vec at(double u, double v) const { return sum(sum(corner, across, u), up, v); }
 };
 
@@ -114,7 +119,7 @@ void note_portals(const builder::Visibility& visibility, const input::MeshSurfac
                  " lies outside of the box around the scene; are its corners in the mesh's own coordinates?");
             continue;
         }
-        const double share = useless_share(surface, window);
+        const double share = std::min(useless_share(surface, window), useless_share(surface, window.turned()));
         if (share > kNotable)
             note(name + " is larger than its opening: no light comes through " +
                  std::to_string(std::lround(100.0 * share)) +

@@ -72,9 +72,9 @@ void PortalOption::add(CLI::App& command, const char* group) {
                 }
             },
             "With --visibility: a window or door that light comes through, three corners of it in the mesh's own "
-            "coordinates, one after the other, counter-clockwise as seen from outside. Samples are taken through "
-            "it. "
-            "May be given up to 8 times")
+            "coordinates, one after the other, either way round. Samples are taken through it. May be given up to "
+            "8 "
+            "times")
         ->type_name("\"X,Y,Z X,Y,Z X,Y,Z\"")
         ->allow_extra_args(false)
         ->group(group);

@@ -237,8 +237,9 @@ struct VisibilityPoint {
     float position[3] = {}, normal[3] = {0.0f, 0.0f, 1.0f};
 };
 
-/// A rectangle in the scene's coordinates: a corner and two sides at right angles. Light comes from the side that
-/// across x up points to, by the right hand.
+/// A rectangle in the scene's coordinates: a corner and two sides at right angles. Rays decide from which side
+/// light comes. Where many leave the scene on either side, it comes from that which across x up points to, by the
+/// right hand.
 struct Portal {
     float corner[3] = {}, across[3] = {1.0f, 0.0f, 0.0f}, up[3] = {0.0f, 1.0f, 0.0f};
 };

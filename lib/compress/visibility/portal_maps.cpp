@@ -42,17 +42,6 @@ Vector axis_of(const AcdfPortalMap& map, int axis) {
     throw std::invalid_argument("portal " + std::to_string(portal + 1) + " " + what);
 }
 
-void check_rectangle(const PortalRectangle& r, std::size_t number) {
-    for (std::size_t k = 0; k < 3; ++k)
-        if (!std::isfinite(r.corner[k]) || !std::isfinite(r.across[k]) || !std::isfinite(r.up[k]))
-            refuse(number, "is not finite");
-    const double across = std::sqrt(dot(r.across, r.across)), up = std::sqrt(dot(r.up, r.up));
-    if (!(std::isfinite(across) && std::isfinite(up) && across >= 1e-12 && up >= 1e-12))
-        refuse(number, "has no area");
-    if (!(std::fabs(dot(r.across, r.up)) <= kRight * across * up))
-        refuse(number, "is not a rectangle: its sides are not at right angles");
-}
-
 AcdfPortalMap map_of(const PortalRectangle& r) {
     const Vector x = unit(r.across), z = unit(cross(x, r.up)), y = cross(z, x);
     AcdfPortalMap out = {};
@@ -140,6 +129,17 @@ double fill(const Target& target, const AcdfPortalMap& map, std::uint32_t size, 
 
 } // namespace
 
+void check_rectangle(const PortalRectangle& r, std::size_t number) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!std::isfinite(r.corner[k]) || !std::isfinite(r.across[k]) || !std::isfinite(r.up[k]))
+            refuse(number, "is not finite");
+    const double across = std::sqrt(dot(r.across, r.across)), up = std::sqrt(dot(r.up, r.up));
+    if (!(std::isfinite(across) && std::isfinite(up) && across >= 1e-12 && up >= 1e-12))
+        refuse(number, "has no area");
+    if (!(std::fabs(dot(r.across, r.up)) <= kRight * across * up))
+        refuse(number, "is not a rectangle: its sides are not at right angles");
+}
+
 PortalSet make_portals(const Target& target, const std::vector<PortalRectangle>& rectangles, std::uint64_t bytes) {
     if (rectangles.size() > ACDF_MAX_PORTALS)
         throw std::invalid_argument("there are more than " + std::to_string(ACDF_MAX_PORTALS) + " portals");
@@ -166,8 +166,7 @@ PortalSet make_portals(const Target& target, const std::vector<PortalRectangle>&
     for (std::size_t m = 0; m < out.maps.size(); ++m) {
         const double one = fill(target, out.maps[m], size, &out.sums[m * corners]) / target.total;
         for (std::size_t i = 0; i < out.portals.size(); ++i)
-            if (out.portals[i].map == m && !(one > 0.0 && std::isfinite(one)))
-                refuse(i, "no light comes from its outer side: give its corners in the other order to turn it");
+            if (out.portals[i].map == m && !(one > 0.0 && std::isfinite(one))) refuse(i, "gets no light from outside");
         out.maps[m].unit = static_cast<float>(std::clamp(one, 0x1p-120, 0x1p120));
     }
     return out;

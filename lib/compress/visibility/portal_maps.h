@@ -35,6 +35,9 @@ struct PortalSet {
     }
 };
 
+/// Throws std::invalid_argument where a rectangle, portal `number` from 0, is none.
+void check_rectangle(const PortalRectangle& rectangle, std::size_t number);
+
 /// Maps of the light of `target`, a probe; those of portals that face the same way are one. They take `bytes` at
 /// most, as far as that can be. The same for any number of threads. Throws std::invalid_argument where a rectangle
 /// is none, or no light reaches it from outside, and where there are more than ACDF_MAX_PORTALS.

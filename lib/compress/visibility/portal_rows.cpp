@@ -162,7 +162,7 @@ double mean_light(const PortalRays& rays, const PortalSet& set, const std::vecto
         });
         if (!arrives)
             throw std::invalid_argument("no light arrives through portal " + std::to_string(k + 1) +
-                                        ": it is closed, or its corners are in the wrong order");
+                                        ": it is closed");
     }
     return mean;
 }

@@ -75,6 +75,22 @@ TEST(MeshPortals, AreGivenByCornersAndByAScene) {
     EXPECT_EQ(Json::parse(measured.out).at("visibility").at("support_violations"), 0);
 }
 
+TEST(MeshPortals, EitherWindingServesInMirroredFramesToo) {
+    PortalFolder folder;
+    constexpr const char* windings[] = {kOpening, "2,2,2 2,0,2 -2,0,2"};
+    for (const char* axes : {"(X, Y, Z)", "(-X, Y, Z)"})
+        for (const char* winding : windings) {
+            const Result made =
+                folder.local("a.acdf", {"--scene-axes", axes, "--visibility", "--portal", winding, "--force"});
+            ASSERT_EQ(made.code, 0) << axes << ", " << winding << ": " << made.err;
+            EXPECT_EQ(made.err.find("portal 1"), std::string::npos) << made.err;
+            const Opened file(folder / "a.acdf");
+            ASSERT_TRUE(file.file.local().has_portals());
+            const float* outside = file.data().portals.maps->axis[2];
+            EXPECT_NEAR(outside[2], 1.0, 1e-5) << axes << ", " << winding;
+        }
+}
+
 TEST(MeshPortals, ThoseThatDoNotFitTheirWindowsAreRemarkedOn) {
     PortalFolder folder;
     const auto remarks = [&](const std::string& portal) {
@@ -122,7 +138,8 @@ TEST(MeshPortals, MistakesAreOneLine) {
     refused({"--visibility", "--portal", "-2,0,2 2,0,2 2,2,2 1"}, 2, "three corners");
     refused({"--visibility", "--portal", "-2,0,2 2,0,2 2,2,nan"}, 2, "three corners");
     refused({"--visibility", "--portal", "-2,0,2 2,0,2 3,2,2"}, 1, "right angles");
-    refused({"--visibility", "--portal", "-2,0,2 -2,2,2 2,2,2"}, 1, "portal 1");
+    refused({"--visibility", "--portal", "-0.4,0.7,0.3 0.4,0.7,0.3 0.4,1.1,0.3"}, 1,
+            "no light arrives through portal 1");
     refused({"--visibility", "--portals", folder / "none.json"}, 1, "none.json");
     write_text(folder / "bad.json", "{}");
     refused({"--visibility", "--portals", folder / "bad.json"}, 1, "bad.json");
