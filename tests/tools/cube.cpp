@@ -117,5 +117,35 @@ TEST_F(CubeCommand, IsAJobOfABatch) {
     EXPECT_NE(missing.err.find("there is no file"), std::string::npos) << missing.err;
 }
 
+TEST_F(CubeCommand, IsNamedInJsonByItsSixFiles) {
+    const json six = {"px.pfm", "nx.pfm", "py.pfm", "ny.pfm", "pz.pfm", "nz.pfm"};
+    const std::string manifest = folder / "library.jsonl", out = folder / "out";
+    write_text(manifest, json{{"source", six}, {"options", {{"faces", "directx"}, {"cells", 200}}}}.dump() + "\n");
+    const Result batch = run_acdf({"batch", manifest, "-o", out});
+    ASSERT_EQ(batch.code, 0) << batch.err;
+    ASSERT_EQ(env(faces, {"--faces", "directx"}).code, 0);
+    EXPECT_EQ(read_text(out + "/px.acdf"), read_text(output));
+    for (const json& source :
+         {json{"px.pfm", "nx.pfm"}, json{"a", "b", "c", "d", "e", "f,g"}, json{1, 2, 3, 4, 5, 6}}) {
+        write_text(manifest, json{{"source", source}}.dump() + "\n");
+        const Result refused = run_acdf({"batch", manifest, "-o", out});
+        EXPECT_EQ(refused.code, 1) << source;
+        EXPECT_NE(refused.err.find("library.jsonl:1: 'source'"), std::string::npos) << refused.err;
+    }
+
+    const json scene = {{"camera", {{"from", {4, -1, 2}}, {"to", {0, 0, 0.5}}, {"fov", 35}}},
+                        {"image", {{"width", 4}, {"height", 3}}},
+                        {"light", {{"probe", six}, {"faces", "directx"}}},
+                        {"objects", {{{"plane", {{"z", 0}}}, {"brdf", "lambert"}}}},
+                        {"samples", 2},
+                        {"samplers", {"full-cdf"}}};
+    write_text(folder / "scene.json", scene.dump());
+    const Result render =
+        run_acdf({"render", "--scene", folder / "scene.json", "--data", folder / "", "-o", folder / "pictures",
+                  "--seeds", "3", "--no-timing", "--no-reference", "--json"});
+    ASSERT_EQ(render.code, 0) << render.err;
+    EXPECT_EQ(json::parse(render.out).at("light"), "px.pfm,nx.pfm,py.pfm,ny.pfm,pz.pfm,nz.pfm");
+}
+
 } // namespace
 } // namespace acdf::test

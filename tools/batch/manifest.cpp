@@ -54,6 +54,20 @@ std::string text_of(const Json& value, const char* key) {
     return text;
 }
 
+/// A file, or the six faces of a cube as one source (lib/input/probe/source.h).
+std::string source_of(const Json& value) {
+    constexpr std::size_t faces = 6;
+    if (!value.is_array()) return text_of(value, "source");
+    if (value.size() != faces) fail("'source' is to be one file, or six: the faces of a cube");
+    std::string joined;
+    for (const Json& item : value) {
+        const std::string file = text_of(item, "source");
+        if (file.find(',') != std::string::npos) fail("'source' has a face with a comma in its name");
+        joined += (joined.empty() ? "" : ",") + file;
+    }
+    return joined;
+}
+
 /// {"budget": "64KiB", "no-sharing": true} as {"--budget=64KiB", "--no-sharing"}.
 std::vector<std::string> options_of_object(const Json& object) {
     std::vector<std::string> options;
@@ -86,7 +100,7 @@ ManifestJob job_of(const Json& object) {
     if (!object.is_object()) fail(std::string("must be an object, not ") + object.type_name());
     ManifestJob job;
     for (const auto& [key, value] : object.items()) {
-        if (key == "source") job.source = text_of(value, "source");
+        if (key == "source") job.source = source_of(value);
         else if (key == "output") job.output = text_of(value, "output");
         else if (key == "options") job.options = options_of(value);
         else if (key == "kind") {

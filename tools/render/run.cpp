@@ -2,6 +2,7 @@
 
 #include "compress/sum.h"
 #include "compress/target.h"
+#include "input/probe/source.h"
 #include "measure/scenes/reference.h"
 #include "tools/demo/probes.h"
 #include "tools/render/sampler_build.h"
@@ -16,9 +17,9 @@ namespace {
 
 input::Probe load_light(const SceneFile& file, const std::string& data) {
     if (!file.probe.empty()) {
-        input::ProbeOptions options;
-        options.projection = file.projection;
-        return input::read_probe((std::filesystem::path(data) / file.probe).string(), options);
+        const std::string source = input::with_paths(
+            file.probe, [&](const std::string& path) { return (std::filesystem::path(data) / path).string(); });
+        return input::read_probe(source, file.reading);
     }
     std::string names;
     for (DemoProbe& demo : demo_probes()) {

@@ -1,6 +1,7 @@
 #include "tools/render/scene_file.h"
 
 #include "build/text/format_names.h"
+#include "input/probe/faces.h"
 #include "tools/render/scene_json.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ using measure::operator-;
 
 constexpr double kFar = 1e6; ///< where shadow rays still begin above their surface
 constexpr std::uint32_t kMostPixels = 4096, kMostSamples = 65536;
-constexpr std::size_t kMostObjects = 1000, kMostSamplers = 64, kMostPortals = 64;
+constexpr std::size_t kMostObjects = 1000, kMostSamplers = 64, kMostPortals = 64, kFaces = 6;
 
 measure::Vec3 point(const JsonValue& value) { return value.triple(-kFar, kFar); }
 
@@ -141,6 +142,35 @@ input::Projection projection(const JsonValue& value) {
     value.fail("is not a projection: auto, latlong, angular, mirrorball, cube-cross, octahedral");
 }
 
+input::Faces faces(const JsonValue& value) {
+    input::Faces out;
+    if (!input::parse_faces(value.text(), out))
+        value.fail("is not an order of faces: directx, opengl, openexr, or a list such as +x,-x,+y,-y,+z,-z");
+    return out;
+}
+
+build::BadPixels bad_pixels(const JsonValue& value) {
+    const std::string text = value.text();
+    if (text == "zero") return build::BadPixels::zero;
+    if (text == "clamp") return build::BadPixels::clamp;
+    if (text == "error") return build::BadPixels::error;
+    value.fail("is none of zero, clamp, error");
+}
+
+/// A file, or six faces of a cube as one source.
+std::string probe(const JsonValue& value) {
+    if (!value.json().is_array()) return value.text();
+    std::vector<std::string> files;
+    value.each(kFaces, [&](const JsonValue& file) { files.push_back(file.text()); });
+    if (files.size() != kFaces) value.fail("is not one file, or six: the faces of a cube");
+    std::string joined;
+    for (const std::string& file : files) {
+        if (file.find(',') != std::string::npos) value.fail("has a face with a comma in its name");
+        joined += (joined.empty() ? "" : ",") + file;
+    }
+    return joined;
+}
+
 AcdfFilter filter(const JsonValue& value) {
     const std::string text = value.text();
     for (const AcdfFilter f : {ACDF_FILTER_NEAREST, ACDF_FILTER_BILINEAR})
@@ -150,9 +180,11 @@ AcdfFilter filter(const JsonValue& value) {
 
 void read_light(const JsonValue& value, SceneFile& scene) {
     JsonObject object(value);
-    object.if_has("probe", [&](const JsonValue& probe) { scene.probe = probe.text(); });
+    object.if_has("probe", [&](const JsonValue& source) { scene.probe = probe(source); });
     object.if_has("built_in", [&](const JsonValue& name) { scene.built_in = name.text(); });
-    object.if_has("projection", [&](const JsonValue& p) { scene.projection = projection(p); });
+    object.if_has("projection", [&](const JsonValue& p) { scene.reading.projection = projection(p); });
+    object.if_has("faces", [&](const JsonValue& f) { scene.reading.faces = faces(f); });
+    object.if_has("bad_pixels", [&](const JsonValue& b) { scene.reading.bad_pixels = bad_pixels(b); });
     object.if_has("filter", [&](const JsonValue& f) { scene.filter = filter(f); });
     object.finish();
     if (scene.probe.empty() == scene.built_in.empty()) value.fail("needs one of 'probe' and 'built_in'");

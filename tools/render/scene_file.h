@@ -37,9 +37,10 @@ struct SceneFile {
     measure::Geometry geometry; ///< its materials are indices into `materials`
     std::vector<SceneMaterial> materials;
     std::vector<SceneMesh> meshes;
-    std::string probe;    ///< a file, relative to the data folder, or
-    std::string built_in; ///< the name of one of demo_probes()
-    input::Projection projection = input::Projection::automatic;
+    std::string
+        probe; ///< a file, or six faces of a cube (lib/input/probe/source.h), relative to the data folder, or
+    std::string built_in;                     ///< the name of one of demo_probes()
+    input::ProbeOptions reading;              ///< of the probe
     AcdfFilter filter = ACDF_FILTER_BILINEAR; ///< how the light is looked up
     std::uint32_t width = 96, height = 72;
     std::uint32_t samples = 20; ///< of each estimate

@@ -35,7 +35,7 @@ TEST(RenderSceneFile, IsReadWhole) {
     EXPECT_EQ(scene.width, 8u);
     EXPECT_EQ(scene.height, 6u);
     EXPECT_EQ(scene.probe, "probe.pfm");
-    EXPECT_EQ(scene.projection, input::Projection::latlong);
+    EXPECT_EQ(scene.reading.projection, input::Projection::latlong);
     EXPECT_EQ(scene.samples, 8u);
     EXPECT_EQ(scene.samplers, (std::vector<std::string>{"full-cdf", "cosine"}));
     ASSERT_EQ(scene.geometry.objects.size(), 3u);
@@ -44,6 +44,20 @@ TEST(RenderSceneFile, IsReadWhole) {
     EXPECT_FALSE(scene.geometry.objects[2].seen);
     ASSERT_EQ(scene.materials.size(), 2u); // what is not seen reflects nothing
     EXPECT_EQ(scene.materials[scene.geometry.objects[1].material].tint[1], 0.7);
+}
+
+TEST(RenderSceneFile, TakesEverySourceOfTheCommandLine) {
+    Json json = small();
+    json["light"] = {{"probe", {"a", "b", "c", "d", "e", "f"}},
+                     {"projection", "cube-cross"},
+                     {"faces", "opengl"},
+                     {"bad_pixels", "clamp"}};
+    const SceneFile scene = parse_scene(json.dump());
+    EXPECT_EQ(scene.probe, "a,b,c,d,e,f");
+    EXPECT_EQ(scene.reading.projection, input::Projection::cube_cross);
+    ASSERT_TRUE(scene.reading.faces);
+    EXPECT_EQ(scene.reading.faces->frame, input::Faces::Frame::opengl);
+    EXPECT_EQ(scene.reading.bad_pixels, build::BadPixels::clamp);
 }
 
 TEST(RenderSceneFile, EqualMaterialsAreOne) {
@@ -76,6 +90,10 @@ TEST(RenderSceneFile, MistakesAreNamedWithTheirKey) {
         {"/image/width", 1.5, "image.width: is 1.5, not a whole number"},
         {"/light/built_in", "sky", "light: needs one of 'probe' and 'built_in'"},
         {"/light/projection", "flat", "light.projection: is not a projection"},
+        {"/light/faces", "vulkan", "light.faces: is not an order of faces"},
+        {"/light/bad_pixels", "keep", "light.bad_pixels: is none of zero, clamp, error"},
+        {"/light/probe", {"a", "b"}, "light.probe: is not one file, or six"},
+        {"/light/probe", {"a", "b", "c", "d", "e", "f,g"}, "light.probe: has a face with a comma"},
         {"/light/filter", "cubic", "light.filter: is not a filter: nearest, bilinear"},
         {"/light/probe", "", "light.probe: is empty"},
         {"/light/probe", "a\nb", "light.probe: has control characters"},
