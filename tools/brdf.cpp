@@ -15,6 +15,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -22,8 +23,12 @@
 namespace acdf::tools {
 namespace {
 
-// Peaks beside the program itself: 76 MiB for models, 80 MiB for files of RGL, 135 MiB for the 33 MiB of MERL.
-constexpr std::uint64_t kBrdfMemory = 96 << 20, kMemoryOfByte = 2;
+// Peaks beside the program itself: models 97 MiB with the default budget, 210 MiB with 1 MiB; 135 MiB for the
+// 33 MiB of MERL.
+constexpr std::uint64_t kBrdfMemory = 80 << 20, kMemoryOfByte = 2, kBrdfMemoryOfBudget = 140;
+constexpr std::uint64_t kBrdfBytesOfCell = 5;
+/// Bytes of a file of a variance, about, times it.
+constexpr double kBrdfBytesOfVariance = 2048.0;
 
 class BrdfConversion : public Conversion {
 public:
@@ -36,6 +41,7 @@ public:
 private:
     bool given(const char* option) const { return command_->get_option(option)->count() > 0; }
     void check_fit() const;
+    std::uint64_t bytes_of_cells() const;
     void add_fit_options(CLI::App& command);
     void add_size_options(CLI::App& command);
     nlohmann::ordered_json report(const builder::BrdfFile& result) const;
@@ -104,11 +110,26 @@ nlohmann::ordered_json BrdfConversion::report(const builder::BrdfFile& result) c
             {"support_violations", a.support_violations}};
 }
 
+/// What of the file cells take, about.
+std::uint64_t BrdfConversion::bytes_of_cells() const {
+    switch (brdf_.goal.kind) {
+    case builder::Goal::Kind::cells:
+        return kBrdfBytesOfCell * brdf_.goal.cells;
+    case builder::Goal::Kind::variance:
+        return static_cast<std::uint64_t>(std::min(kBrdfBytesOfVariance / brdf_.goal.variance, 0x1p22));
+    case builder::Goal::Kind::budget:
+        return brdf_.goal.budget;
+    default:
+        return builder::DefaultBudget::brdf;
+    }
+}
+
 std::uint64_t BrdfConversion::memory() const {
-    if (input::is_model(source)) return kBrdfMemory;
+    const std::uint64_t fit = kBrdfMemory + bytes_of_cells() * kBrdfMemoryOfBudget;
+    if (input::is_model(source)) return fit;
     std::error_code error;
     const std::uintmax_t bytes = std::filesystem::file_size(source, error);
-    return error ? 0 : kBrdfMemory + bytes * kMemoryOfByte;
+    return error ? 0 : fit + bytes * kMemoryOfByte;
 }
 
 Converted BrdfConversion::convert(const Listener& listener) {

@@ -1,7 +1,6 @@
 // acdf env: an environment map to an .acdf file.
 #include "build/environment.h"
 #include "build/text/format_names.h"
-#include "input/probe/image_header.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/conversion.h"
@@ -16,6 +15,7 @@
 #include "tools/cli/renderer.h"
 #include "tools/cli/scene_option.h"
 #include "tools/cli/sizes.h"
+#include "tools/cli/target_memory.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
 
@@ -29,14 +29,14 @@
 namespace acdf::tools {
 namespace {
 
-// Peaks beside the program itself, measured on probes of 2^19 to 2^25 pixels: 6 bytes a pixel for a lat-long map in
-// one channel, 15 to 23 for three channels, with clamped pixels, or resampled. And what lib/build/probe/overlap.h
-// keeps of small maps that are resampled.
-constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kOverlapMemory = 24 << 20, kEnvironmentMemoryOfPixel = 24;
-// A tree takes so much on top while it is looked for: of each cell asked for (four bytes of a budget, one where
-// it is for deflated ones). There are no more cells than pixels, which take less each where they are many; a
-// variance may ask for as many, but for no larger file than is searched for.
-constexpr std::uint64_t kMemoryOfCell = 6000, kCellBytes = 4, kDeflatedCellBytes = 1, kMemoryOfEachPixel = 720;
+// Peaks beside the program itself (tools/cli/target_memory.h has those of targets), measured on probes of 2^15 to
+// 2^23 pixels. Of each texel the sums of all halvings, twice beside a partner, or what curves need.
+constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kPartnerMemory = 24 << 20;
+constexpr std::uint64_t kSumsOfTexel = 16, kPartnerOfTexel = 28, kCurvesOfTexel = 8;
+// A tree while it is grown. A cell takes 9 bits of a file at least.
+constexpr std::uint64_t kMemoryOfCell = 110, kBitsOfCell = 9;
+/// Cells that a variance takes of nearly all maps, times it.
+constexpr double kCellsOfVariance = 4000.0;
 
 class EnvConversion : public Conversion {
 public:
@@ -55,8 +55,7 @@ private:
     void check_partner() const;
     void set_knots();
     void add_fit_options(CLI::App& command);
-    std::uint64_t memory_of_tree(std::uint64_t pixels) const;
-    bool is_resampled(const input::ImageSize& size) const;
+    std::uint64_t most_cells(std::uint64_t texels) const;
     nlohmann::ordered_json report(const ProbeTarget& loaded, const builder::Environment& result) const;
 
     input::ProbeOptions input_;
@@ -186,30 +185,28 @@ nlohmann::ordered_json EnvConversion::report(const ProbeTarget& loaded, const bu
     return out;
 }
 
-std::uint64_t EnvConversion::memory_of_tree(std::uint64_t pixels) const {
+/// The cells of the largest tree that is grown.
+std::uint64_t EnvConversion::most_cells(std::uint64_t texels) const {
     const builder::Goal& goal = environment_.goal;
-    if (environment_.fit.fit != ACDF_FIT_VARIANCE) return 0;
-    if (goal.kind == builder::Goal::Kind::variance)
-        return std::min(pixels, build::kMostBytesForVariance / kCellBytes) * kMemoryOfEachPixel;
-    const std::uint64_t bytes_of_cell = environment_.codec == ACDF_CODEC_NONE ? kCellBytes : kDeflatedCellBytes;
-    const std::uint64_t cells = goal.kind == builder::Goal::Kind::budget ? goal.budget / bytes_of_cell : goal.cells;
-    return std::min(cells * kMemoryOfCell, pixels * kMemoryOfEachPixel);
-}
-
-/// As far as its header and the options show.
-bool EnvConversion::is_resampled(const input::ImageSize& size) const {
-    const bool latlong = input_.projection == input::Projection::automatic
-                             ? size.width == 2 * size.height
-                             : input_.projection == input::Projection::latlong;
-    return !latlong || input_.domain == input::Domain::octahedral;
+    std::uint64_t cells = goal.cells;
+    if (goal.kind == builder::Goal::Kind::budget) cells = goal.budget * 8 / kBitsOfCell;
+    if (goal.kind == builder::Goal::Kind::variance) {
+        cells = build::kMostBytesForVariance * 8 / kBitsOfCell;
+        if (environment_.fit.max_weight == 0.0)
+            cells = static_cast<std::uint64_t>(std::min(double(cells), kCellsOfVariance / goal.variance));
+    }
+    return std::min(cells, texels);
 }
 
 std::uint64_t EnvConversion::memory() const {
-    const input::ImageSize size = input::image_size(source);
-    const std::uint64_t pixels = size.pixels();
-    if (pixels == 0) return 0;
-    return kEnvironmentMemory + (is_resampled(size) ? kOverlapMemory : 0) + pixels * kEnvironmentMemoryOfPixel +
-           memory_of_tree(pixels);
+    const TargetMemory of = target_memory(source, input_, environment_.target);
+    if (of.texels == 0) return 0;
+    const bool partner = environment_.mis.kind != ACDF_PARTNER_NONE;
+    if (environment_.fit.fit != ACDF_FIT_VARIANCE)
+        return kEnvironmentMemory + std::max(of.reading, of.target + of.texels * kCurvesOfTexel);
+    const std::uint64_t fit = of.texels * (kSumsOfTexel + (partner ? kPartnerOfTexel : 0));
+    return kEnvironmentMemory + (partner ? kPartnerMemory : 0) +
+           std::max(of.reading, of.target + fit + most_cells(of.texels) * kMemoryOfCell);
 }
 
 Converted EnvConversion::convert(const Listener& listener) {

@@ -2,7 +2,6 @@
 #include "build/text/format_names.h"
 #include "input/mesh/instances.h"
 #include "input/mesh/surface.h"
-#include "input/probe/image_header.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/conversion.h"
@@ -19,11 +18,13 @@
 #include "tools/cli/renderer.h"
 #include "tools/cli/scene_option.h"
 #include "tools/cli/sizes.h"
+#include "tools/cli/target_memory.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -31,9 +32,16 @@
 namespace acdf::tools {
 namespace {
 
-// Peaks beside the program itself, measured on probes of 2^19 to 2^23 pixels with budgets up to 1 MiB: 20 to 35
-// bytes a pixel; with a budget of 8 MiB 38 for each of its bytes.
-constexpr std::uint64_t kLocalMemory = 96 << 20, kLocalMemoryOfPixel = 40, kLocalMemoryOfByte = 40;
+// Peaks beside the program itself (tools/cli/target_memory.h has those of targets), measured on probes of 2^15 to
+// 2^23 pixels with budgets up to 8 MiB: light as points and coarse maps; of each texel what tiles are found by; of
+// each byte of the file the cells that it is chosen from, of which there are no more than texels suffice for.
+constexpr std::uint64_t kLocalMemory = 16 << 20, kLocalMemoryOfTexel = 16, kLocalPartnerOfTexel = 20;
+constexpr std::uint64_t kLocalMemoryOfByte = 170, kLocalPartnerOfByte = 120, kLocalCellsOfTexel = 1200;
+// Of bins with trees of their own.
+constexpr std::uint64_t kSeparateOfByte = 900, kSeparateOfTexel = 32, kSeparateOfKnot = 32;
+constexpr std::uint64_t kLocalBytesOfCell = 5; // of a file
+/// Bytes of a file of a variance, about, times it.
+constexpr double kLocalBytesOfVariance = 16384.0;
 
 // Visibility of meshes of up to 120,000 triangles, with budgets up to 4 MB: what their rays have met, and the mesh.
 constexpr std::uint64_t kVisibilityMemory = 64 << 20, kVisibilityMemoryOfByte = 200, kMeshMemoryOfByte = 32;
@@ -59,6 +67,10 @@ private:
     void add_separate(CLI::App& command);
     nlohmann::ordered_json report(const ProbeTarget& loaded, const builder::Local& result) const;
     std::string scene_text() const;
+    std::uint64_t most_bins() const;
+    std::uint64_t bytes_of_cells() const;
+    std::uint64_t memory_of_separate(const TargetMemory& of) const;
+    std::uint64_t memory_of_shared(const TargetMemory& of) const;
 
     std::string normals_, budget_, knots_;
     SceneOption scene_;
@@ -230,15 +242,50 @@ std::string summary_of(const builder::Local& result) {
     return text;
 }
 
+/// Bins of a file whose bins have trees of their own.
+std::uint64_t LocalConversion::most_bins() const {
+    if (local_.columns > 0) return std::uint64_t{local_.columns} * local_.rows;
+    const std::uint64_t n = local_.subdivisions > 0 ? local_.subdivisions : 6;
+    return 4 * n * n + 2;
+}
+
+/// What of the file cells take, at most.
+std::uint64_t LocalConversion::bytes_of_cells() const {
+    switch (local_.goal.kind) {
+    case builder::Goal::Kind::budget:
+        return local_.goal.budget;
+    case builder::Goal::Kind::variance:
+        return static_cast<std::uint64_t>(std::min(kLocalBytesOfVariance / local_.goal.variance, 0x1p26));
+    default:
+        return kLocalBytesOfCell * local_.goal.cells * (local_.sharing ? 1 : most_bins());
+    }
+}
+
+std::uint64_t LocalConversion::memory_of_separate(const TargetMemory& of) const {
+    const builder::FitOptions& fit = local_.fit;
+    const std::uint64_t all = of.target + of.texels * kSeparateOfTexel, bins = most_bins();
+    if (fit.fit == ACDF_FIT_VARIANCE)
+        return all + std::min(bytes_of_cells() * kSeparateOfByte, bins * of.texels * kLocalCellsOfTexel);
+    const std::uint64_t knots = std::uint64_t{fit.phi_segments} * fit.theta_segments;
+    return all + bins * kSeparateOfKnot * std::min(knots, of.texels);
+}
+
+std::uint64_t LocalConversion::memory_of_shared(const TargetMemory& of) const {
+    const bool partner = local_.mis.kind != ACDF_PARTNER_NONE;
+    const std::uint64_t of_byte = partner ? kLocalPartnerOfByte : kLocalMemoryOfByte;
+    return of.target + of.texels * (kLocalMemoryOfTexel + (partner ? kLocalPartnerOfTexel : 0)) +
+           std::min(bytes_of_cells() * of_byte, of.texels * kLocalCellsOfTexel);
+}
+
 std::uint64_t LocalConversion::memory() const {
-    const std::uint64_t pixels = input::image_size(source).pixels();
-    if (pixels == 0) return 0;
-    const std::uint64_t alone = kLocalMemory + pixels * kLocalMemoryOfPixel;
-    const bool bounded = local_.goal.kind == builder::Goal::Kind::budget;
-    if (!visibility_) return alone + (bounded ? local_.goal.budget * kLocalMemoryOfByte : 0);
-    std::uint64_t visibility = kVisibilityMemory + kVisibilityMemoryOfByte * local_.goal.budget;
-    for (const std::string& path : scene_.paths) visibility += kMeshMemoryOfByte * input::scene_bytes(path);
-    return alone + visibility;
+    const TargetMemory of = target_memory(source, input_, local_.target);
+    if (of.texels == 0) return 0;
+    std::uint64_t fit = local_.sharing ? memory_of_shared(of) : memory_of_separate(of);
+    if (visibility_) {
+        fit += kVisibilityMemory + kVisibilityMemoryOfByte * local_.goal.budget;
+        for (const std::string& path : scene_.paths) fit += kMeshMemoryOfByte * input::scene_bytes(path);
+    }
+    return kLocalMemory + std::max(of.reading, fit);
 }
 
 Converted LocalConversion::convert(const Listener& listener) {

@@ -14,6 +14,21 @@ constexpr std::uint32_t kBlock = 64; // a tile of 64 x 64 floats stays in the ca
 
 } // namespace
 
+Target of_values(const Target& target) {
+    Target out;
+    out.columns = target.columns;
+    out.rows = target.rows;
+    out.values = target.values;
+    out.column_measure = target.column_measure;
+    out.row_measure = target.row_measure;
+    out.column_axis = target.column_axis;
+    out.row_axis = target.row_axis;
+    out.total = target.total;
+    out.mean_square = target.mean_square;
+    out.parameterization = target.parameterization;
+    return out;
+}
+
 Target transposed(const Target& target) {
     Target out;
     out.columns = target.rows;

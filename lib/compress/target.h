@@ -101,6 +101,9 @@ private:
 Target environment_target(const float* rgb, std::uint32_t columns, std::uint32_t rows,
                           const TargetOptions& options);
 
+/// The same function without its means and peaks, which not all fits look at.
+Target of_values(const Target& target);
+
 /// The same function with rows and columns exchanged.
 Target transposed(const Target& target);
 

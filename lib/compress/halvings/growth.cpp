@@ -16,6 +16,9 @@ public:
         : sums_(sums), integral_(integral), limits_(limits) {}
 
     GrownTree run() {
+        const std::size_t texels = std::size_t{sums_.grid().shape[0]} * sums_.grid().shape[1];
+        tree_.nodes.reserve(2 * std::min(limits_.leaves, texels)); // no copies as it grows
+        tree_.cost.reserve(std::min(limits_.leaves, texels));
         total_ = sums_.cost(sums_.whole());
         tree_.nodes.push_back({sums_.whole(), 0, static_cast<float>(total_), -1});
         tree_.cost.push_back(total_);

@@ -122,8 +122,7 @@ OneBin target_of(const Target& target, const std::vector<LightPoint>& light, con
                              ? 0.5 * ACDF_OCTAHEDRAL_SPEED * (1.0 / target.rows + 1.0 / target.columns)
                              : ACDF_PI * std::hypot(0.5 / target.rows, 1.0 / target.columns);
     const MeanSquare square(normals, light, texel);
-    OneBin out{target, square.mean_irradiance};
-    out.target.peaks.clear();
+    OneBin out{of_values(target), square.mean_irradiance};
     parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
         float* row = out.target.values.data() + std::size_t{r} * target.columns;
         for (std::uint32_t c = 0; c < target.columns; ++c) {

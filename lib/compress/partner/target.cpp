@@ -207,9 +207,9 @@ void fill(Target& target, const std::vector<float>& density, double nu) {
 
 /// The same light times a power of two, so that the brightest texel has from 1/2 to 1: results from it are
 /// in the range of floats. Pdfs do not change.
-Target in_range(Target target) {
+Target in_range(const Target& given) {
+    Target target = of_values(given);
     target.mean_square = 0.0;
-    target.peaks.clear();
     int exponent = 0;
     std::frexp(*std::max_element(target.values.begin(), target.values.end()), &exponent);
     for (float& value : target.values) value = std::ldexp(value, -exponent);

@@ -37,12 +37,13 @@ std::uint64_t peak_of(const std::vector<std::string>& arguments, const std::stri
 class BatchMemory : public testing::Test {
 protected:
     Folder folder;
-    const std::string noise = folder / "noise.pfm", larger = folder / "larger.pfm", tiny = folder / "tiny.pfm",
-                      disc = folder / "disc.pfm";
+    const std::string noise = folder / "noise.pfm", larger = folder / "larger.pfm",
+                      largest = folder / "largest.pfm", tiny = folder / "tiny.pfm", disc = folder / "disc.pfm";
 
     void SetUp() override {
         write_small_probe(noise, 1, 128);  // the worst there is: every texel is worth a cell of its own
         write_small_probe(larger, 1, 256); // of so many that what a tree takes counts
+        write_small_probe(largest, 1, 512);
         write_small_probe(tiny, 1, 2);
         write_float_map(disc, 16, 16, std::vector<float>(3 * 16 * 16, 0.5f));
     }
@@ -73,56 +74,63 @@ protected:
     }
 };
 
-TEST_F(BatchMemory, JobsTakeNoMoreThanIsEstimated) {
+/// An estimate is exceeded by no more than this, the program's own memory not counted.
+constexpr double kMostOver = 1.3;
+/// Where a job takes much, no estimate is so many times more: it would be refused for nothing.
+constexpr double kMostUnder = 3.0;
+constexpr std::uint64_t kMuch = 64 << 20;
+
+TEST_F(BatchMemory, JobsTakeAboutWhatIsEstimated) {
     if (acdf_test::kSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
     std::vector<Job> jobs;
     for (const char* options : {"",
-                                "--cells 100",
                                 "--cells 4000",
-                                "--cells 40000",
+                                "--cells 40000 --filter nearest",
                                 "--budget 4KiB",
-                                "--budget 16KiB",
-                                "--budget 64KiB",
                                 "--budget 128KiB",
                                 "--budget 1MiB",
+                                "--budget 1MiB --compress zlib",
                                 "--target-variance 0.05",
                                 "--target-variance 0.001 --filter nearest",
                                 "--budget 32KiB --channel rgb",
-                                "--budget 32KiB --channel max",
-                                "--budget 32KiB --filter nearest",
-                                "--budget 64KiB --max-weight 20",
+                                "--budget 32KiB --channel max --filter nearest",
                                 "--budget 32KiB --domain octahedral",
-                                "--budget 32KiB --max-weight 3 --filter nearest",
-                                "--budget 64KiB --max-weight 1.5 --filter nearest",
-                                "--cells 4000 --max-weight 2 --filter nearest",
+                                "--budget 1MiB --domain octahedral --channel rgb",
+                                "--budget 64KiB --max-weight 6 --filter nearest",
                                 "--target-variance 0.05 --max-weight 3 --filter nearest",
-                                "--target-variance 0.001 --max-weight 1.1 --filter nearest",
-                                "--budget 32KiB --compress zlib",
-                                "--target-variance 0.3 --channel rgb",
+                                "--budget 64KiB --mis cosine",
+                                "--budget 64KiB --mis mean --domain octahedral",
+                                "--bad-pixels clamp",
                                 "--fit cdf",
-                                "--fit pdf",
-                                "--fit uniform"})
-        jobs.push_back({"env", noise, options});
-    for (const char* options :
-         {"--target-variance 0.001 --filter nearest", "--target-variance 0.01 --max-weight 2 --filter nearest"})
+                                "--fit pdf --order z",
+                                "--fit uniform --channel rgb"})
         jobs.push_back({"env", larger, options});
+    for (const char* options : {"--budget 1MiB", "--budget 256KiB --mis cosine --filter nearest"})
+        jobs.push_back({"env", largest, options});
     jobs.push_back({"env", disc, "--projection angular --cells 100"}); // cut into half a million cells
-    for (const char* options : {"--budget 16KiB --normals 2", "--budget 32KiB --normals 2 --domain octahedral",
-                                "--no-sharing --fit cdf --normals 2", "--budget 64KiB --normals 3",
-                                "--budget 64KiB --normals 3 --max-weight 40"})
+    for (const char* options :
+         {"--budget 32KiB", "--budget 128KiB --shape small", "--budget 256KiB --shape fast",
+          "--budget 64KiB --domain octahedral", "--budget 128KiB --compress zlib --shape small",
+          "--budget 64KiB --mis cosine", "--budget 64KiB --mis brdf --domain octahedral",
+          "--budget 128KiB --shape small --channel rgb", "--budget 64KiB --normals 3 --max-weight 40",
+          "--no-sharing --normals 2 --budget 128KiB", "--no-sharing --fit cdf --normals 2"})
         jobs.push_back({"local", noise, options});
     const std::string mesh = folder / "floor.obj";
     write_text(mesh, "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 1\nv 1 0 1\nf 1 2 3 4\nf 5 6 3\n");
     jobs.push_back({"local", noise, "--budget 128KiB --visibility --scene " + mesh});
-    for (const char* options : {"--budget 12KiB --views 4", "--fit cdf --views 6", "--cells 40 --views 4",
-                                "--budget 12KiB --views 4 --max-weight 10"})
+    for (const char* options :
+         {"--budget 12KiB --views 4", "--fit cdf --views 6", "--cells 40 --views 4",
+          "--budget 12KiB --views 4 --no-sharing", "--budget 12KiB --views 4 --max-weight 10"})
         jobs.push_back({"brdf", "lambert", options});
-    ASSERT_EQ(jobs.size(), 39u);
+    ASSERT_GE(jobs.size(), 40u);
     const std::vector<std::uint64_t> estimated = estimates(jobs);
     const std::uint64_t program = peak({"env", tiny, "--cells 2"}); // with the module of images
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         const std::uint64_t used = peak(jobs[i]), beside = used - std::min(used, program);
-        EXPECT_LE(beside, estimated[i]) << jobs[i].kind << " " << jobs[i].options;
+        EXPECT_LE(double(beside), kMostOver * double(estimated[i])) << jobs[i].kind << " " << jobs[i].options;
+        if (beside > kMuch) {
+            EXPECT_LE(double(estimated[i]), kMostUnder * double(beside)) << jobs[i].kind << " " << jobs[i].options;
+        }
         std::printf("%s %s: %llu of %llu MiB\n", jobs[i].kind.c_str(), jobs[i].options.c_str(),
                     static_cast<unsigned long long>(beside >> 20),
                     static_cast<unsigned long long>(estimated[i] >> 20));
