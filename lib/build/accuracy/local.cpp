@@ -303,6 +303,7 @@ private:
         out.relative_variance_full_cdf = state.baseline.relative_variance();
         out.support_violations = state.both.violations();
         out.max_weight = state.both.max_weight();
+        out.max_weight_full_cdf = state.baseline.max_weight();
         out.combined = true;
         return out;
     }

@@ -28,6 +28,7 @@ struct NormalAccuracy {
     double relative_variance_full_cdf = 0.0;   ///< what the probe's own full-resolution CDF has
     double share_above_horizon_full_cdf = 0.0; ///< the same
     bool combined = false;                     ///< see LocalAccuracy
+    double max_weight_full_cdf = 0.0;          ///< beside the partner, where combined
 };
 
 using LocalAccuracy = builder::LocalAccuracy;

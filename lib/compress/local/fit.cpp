@@ -139,7 +139,7 @@ LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const Bin
     if (bins.subdivisions == 0) throw std::invalid_argument("cells of normals cannot share tiles");
     if (fast() && (partner || std::isfinite(size.max_weight)))
         throw std::invalid_argument("the fast shape has no partner, and no bound on weights");
-    if (partner) beside_.emplace(target, light.points, bins, light.irradiance, partner);
+    if (partner) beside_.emplace(target, light.points, bins, partner);
     report(0.1);
     rule_ = divide(beside_ ? beside_->excess(target) : target, light.worth, std::min(size.tiles, ACDF_MAX_TILES),
                    tiles_);

@@ -71,7 +71,8 @@ std::vector<LightPoint> light_points(const Target& target) {
         for (std::uint32_t r = blocks[i].begin[0]; r < blocks[i].end[0]; ++r)
             for (std::uint32_t c = blocks[i].begin[1]; c < blocks[i].end[1]; ++c)
                 sum.add(target.row(r)[c] * target.row_measure[r] * target.column_measure[c]);
-        points[i] = {centre(target, blocks[i]), sum.value(), solid_angle(target, blocks[i])};
+        points[i] = {centre(target, blocks[i]), sum.value(), solid_angle(target, blocks[i]),
+                     radius(target, blocks[i])};
     });
     return points;
 }

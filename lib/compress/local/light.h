@@ -23,6 +23,7 @@ struct LightPoint {
     Direction direction{};
     double amount = 0.0;
     double measure = 0.0; ///< the solid angle that it comes from, where that is known
+    double radius = 0.0;  ///< of any direction in it, from the middle, where that is known
 };
 
 /// Radians across which light is taken to have one cosine.

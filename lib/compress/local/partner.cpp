@@ -10,13 +10,39 @@ namespace acdf::compress {
 namespace {
 
 constexpr double kPieceStep = 0.02; // radians across which light in a cell has one cosine
+/// Of the samples that the CDF of all light gives a tile, those that stay at normals which see it at their horizon,
+/// where the partner has few.
+constexpr double kLeastOfCdf = 0.025;
+constexpr double kBounded = 150.0; // weights that need no such samples
+constexpr double kSpacing = 2.45; // the distance of neighbouring bins, times the subdivisions
+
+/// The mean of the cosines above the horizon of a disc of directions.
+double seen_cosine(double height, double radius) {
+    if (height >= radius) return height;
+    return height > -radius ? (height + radius) * (height + radius) / (4.0 * radius) : 0.0;
+}
+
+/// For each bin the sum of amounts times what `cosine` makes of a point's height above its horizon, and radius.
+template <class Cosine>
+std::vector<double> sums_of_light(const std::vector<LightPoint>& points, const NormalBins& bins,
+                                  const Cosine& cosine) {
+    std::vector<double> out(bins.normals.size(), 0.0);
+    parallel_for(std::size_t{0}, out.size(), [&](std::size_t b) {
+        for (const LightPoint& p : points) out[b] += p.amount * cosine(dot(p.direction, bins.normals[b]), p.radius);
+    });
+    return out;
+}
 
 } // namespace
 
 LocalPartner::LocalPartner(const Target& target, const std::vector<LightPoint>& points, const NormalBins& bins,
-                           const std::vector<double>& irradiance, const Partner& partner)
+                           const Partner& partner)
     : lobes_(partner.kind), filling_(std::make_shared<const Filling>(partner.heuristic)),
       ratio_(partner.light / partner.other), nu_(bins.normals.size(), 0.0) {
+    const std::vector<double> irradiance = sums_of_light(points, bins, seen_cosine);
+    const double spacing = kSpacing / bins.subdivisions;
+    least_irradiance_ = sums_of_light(
+        points, bins, [spacing](double height, double radius) { return std::max(0.0, height - radius - spacing); });
     parallel_for(std::size_t{0}, nu_.size(), [&](std::size_t b) {
         if (irradiance[b] > 0.0) nu_[b] = solve(points, bins.normals[b], irradiance[b]);
     });
@@ -47,7 +73,7 @@ double LocalPartner::solve(const std::vector<LightPoint>& points, const Directio
     std::vector<Seen> seen;
     double all = 0.0, partner = 0.0;
     for (const LightPoint& p : points) {
-        const double cosine = dot(p.direction, normal);
+        const double cosine = seen_cosine(dot(p.direction, normal), p.radius);
         if (!(cosine > 0.0) || !(p.measure > 0.0)) continue;
         const double brightness = lobes_.brightness(cosine), density = lobes_.density(cosine);
         partner += density * p.measure;
@@ -69,7 +95,7 @@ double LocalPartner::solve(const std::vector<LightPoint>& points, const Directio
 }
 
 Target LocalPartner::filled(const Target& target) const {
-    Target out = target;
+    Target out = of_values(target);
     out.filling = filling_;
     out.left.resize(target.values.size());
     out.least.resize(target.values.size());
@@ -86,7 +112,7 @@ Target LocalPartner::filled(const Target& target) const {
 }
 
 Target LocalPartner::excess(const Target& target) const {
-    Target out = target;
+    Target out = of_values(target);
     parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
         for (std::uint32_t c = 0; c < target.columns; ++c) {
             float& value = out.values[std::size_t{r} * target.columns + c];
@@ -95,6 +121,10 @@ Target LocalPartner::excess(const Target& target) const {
         }
     });
     return out;
+}
+
+bool LocalPartner::bounds(std::size_t bin, double light) const {
+    return ACDF_PI * (1.0 + ratio_) * light <= kBounded * least_irradiance_[bin];
 }
 
 double LocalPartner::share(std::size_t bin, double cosine, double alone, double measure) const {
@@ -107,7 +137,7 @@ FilledTiles::FilledTiles(const Target& target, const TileTree& tiles, const Tile
                          const TileCascade& cascade, const std::vector<AcdfBrightTile>& bright_tiles,
                          const LocalPartner& partner, const NormalBins& bins)
     : target_(target), bright_tiles_(bright_tiles), partner_(partner), bins_(bins),
-      is_light_(tiles.tiles.size(), false), pieces_(tiles.tiles.size()) {
+      is_light_(tiles.tiles.size(), false), pieces_(tiles.tiles.size()), extents_(tiles.tiles.size()) {
     for (const AcdfBrightTile& light : bright_tiles) is_light_[light.tile] = true;
     parallel_for(std::size_t{0}, pieces_.size(), [&](std::size_t t) {
         double shares = 0.0, costs = 0.0;
@@ -129,7 +159,30 @@ FilledTiles::FilledTiles(const Target& target, const TileTree& tiles, const Tile
                                       measure * share, density});
             });
         });
+        Extent& extent = extents_[t];
+        for (const Piece& piece : pieces_[t]) {
+            extent.flux += piece.light * piece.measure;
+            extent.brightest = std::max(extent.brightest, piece.light);
+        }
+        extent.middle = centre(target, tiles.tiles[t]);
+        extent.reach = radius(target, tiles.tiles[t]);
     });
+    for (const Extent& extent : extents_) flux_ += extent.flux;
+}
+
+/// Of the mixture at any normal each row is a part, and what the horizon of the one hides the other may see. There
+/// weights are at most those of the CDF of all light over kLeastOfCdf, or about kBounded.
+void FilledTiles::keep_least(std::size_t bin, std::vector<double>& shares) const {
+    double all = 0.0;
+    for (const double share : shares) all += share;
+    const double spacing = kSpacing / bins_.subdivisions;
+    for (std::size_t t = 0; t < shares.size(); ++t) {
+        const Extent& extent = extents_[t];
+        if (is_light_[t] || !(extent.flux > 0.0) || partner_.bounds(bin, extent.brightest)) continue;
+        const double height = dot(extent.middle, bins_.normals[bin]), around = extent.reach + spacing;
+        if (height < -around || height - around > partner_.scarce(extent.brightest, flux_, kLeastOfCdf)) continue;
+        shares[t] = std::max(shares[t], kLeastOfCdf * all * (extent.flux / flux_));
+    }
 }
 
 std::vector<double> FilledTiles::shares(std::size_t bin) const {
@@ -140,6 +193,7 @@ std::vector<double> FilledTiles::shares(std::size_t bin) const {
             out[t] += partner_.share(bin, cosine, piece.light * piece.measure, piece.measure);
         });
     }
+    keep_least(bin, out);
     return out;
 }
 
