@@ -154,12 +154,13 @@ partner_draws() { ACDF=$acdf "$root/docs/make/partner_tables.sh" "$data" 12x9 24
 # ---- baselines on the light itself -----------------------------------------------------------------------------------
 
 baselines() {
-    "$acdf" sweep "$data/probes/noon_grass_1k.hdr" -o "$results/sweep" --force --quiet --json > "$results/sweep.json"
-    echo "\`acdf sweep DATA/probes/noon_grass_1k.hdr -o out\`:"
+    "$acdf" sweep "$data/probes/noon_grass_1k.hdr" -o "$results/sweep" --files env,env-cdf,env-pdf,env-uniform \
+        --budgets 4KiB,16KiB,64KiB,256KiB,1MB --force --quiet --json > "$results/sweep.json"
+    echo "\`acdf sweep DATA/probes/noon_grass_1k.hdr -o out --files env,env-cdf,env-pdf,env-uniform --budgets 4KiB,16KiB,64KiB,256KiB,1MB\`:"
     echo
     echo "| system | memory | relative variance | time of a sample, of the full CDF's | ns a pdf |"
     echo "|---|---|---|---|---|"
-    jq -r "$jq_lib"' .rows[] | select(.bytes > 0) | "| \(.label) | \(.bytes|size) | \(.relative_variance|sig) | \({value: .time_ratio, low: .time_ratio_low, high: .time_ratio_high}|interval) | \(.ns_per_pdf|sig) |"' \
+    jq -r "$jq_lib"' .rows[] | select(.relative_variance != null) | "| \(.label) | \(.bytes|size) | \(.relative_variance|sig) | \({value: .time_ratio, low: .time_ratio_low, high: .time_ratio_high}|interval) | \(.ns_per_pdf|sig) |"' \
         "$results/sweep.json"
 }
 

@@ -40,7 +40,7 @@ lit() {
     shift 2
     for sampler in "$@"; do options+=(--sampler "$sampler"); done
     "$acdf" render --scene "$root/tools/render/scenes/$scene.json" --data "$data" --size "${size:-320x240}" --samples "$samples" --seeds 4 \
-        --sequence independent --no-reference --no-timing --quiet --force -o "$work/render" "${options[@]}" > /dev/null
+        --sequence independent --no-reference --no-timing --images --quiet --force -o "$work/render" "${options[@]}" > /dev/null
 }
 
 # The light of Grace Cathedral on matte surfaces: as many samples of the full table and of a file. README.md has the
@@ -111,7 +111,7 @@ equal_time() {
     local scene=$1 options=() shown=() one points made sampling budget='' i=0 samples
     shift
     local common=(render --scene "$results/$scene.json" --data "$data" --size 320x240 --sequence independent --no-reference --seeds 3
-                  --quiet --force)
+                  --images --quiet --force)
     for one in "$@"; do options+=(--sampler "${one%=*}"); done
     "$acdf" "${common[@]}" --samples 16 -o "$work/timed" "${options[@]}" > /dev/null
     points=$(jq .points "$work/timed/render.json")

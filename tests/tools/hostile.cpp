@@ -120,7 +120,7 @@ TEST_F(Hostile, NamesThatTurnTheLine) {
     expect_plain({"batch", odd, "-o", folder / ("batch" + turn)});
     expect_plain({"batch", odd, "-o", folder / ("batch" + turn), "--dry-run"});
     expect_plain({"batch", odd, "-o", folder / ("ninja" + turn), "--emit", "ninja"});
-    expect_plain({"sweep", odd, "-o", folder / ("sweep" + turn), "--kind", "env", "--budgets", "1KiB"});
+    expect_plain({"sweep", odd, "-o", folder / ("sweep" + turn), "--files", "env", "--budgets", "1KiB"});
     expect_plain({"demo", odd, "-o", folder / ("demo" + turn)});
 }
 
@@ -180,10 +180,16 @@ TEST_F(Hostile, CommandsThatFailLeaveNoFolder) {
         "objects": [{"sphere": {"centre": [0, 0, 0], "radius": 1}, "brdf": "lambert"}],
         "samples": 1, "samplers": ["portals"]})";
     expect_failure({"render", "--scene", scene, "-o", out, "-q"}, 1, "the scene has no portals");
-    expect_failure({"sweep", probe, "-o", out, "--kind", "brdf", "-q"}, 1, "it is not a BRDF file");
+    const std::vector<std::string> words{"sweep", probe, "--files", "env", "--budgets", "1", "-q", "-o"};
+    const auto fails = [&](const std::string& to) {
+        std::vector<std::string> all = words;
+        all.push_back(to);
+        expect_failure(all, 1, "none of the sizes can be made");
+    };
+    fails(out);
     EXPECT_EQ(folder.entries(), 2u); // the probe and the scene
     ASSERT_EQ(mkdir((folder / "a").c_str(), 0700), 0);
-    expect_failure({"sweep", probe, "-o", folder / "a", "--kind", "brdf", "-q"}, 1, "it is not a BRDF file");
+    fails(folder / "a");
     EXPECT_EQ(folder.entries(), 3u); // the folder was there before
 }
 

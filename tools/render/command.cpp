@@ -10,6 +10,7 @@
 #include "tools/plot/image.h"
 #include "tools/render/images.h"
 #include "tools/render/output_files.h"
+#include "tools/render/page.h"
 #include "tools/render/report.h"
 #include "tools/render/run.h"
 #include "tools/render/sampler_build.h"
@@ -29,11 +30,11 @@ namespace {
 struct RenderArguments {
     std::string scene, output, data = ".", size;
     std::vector<std::string> samplers;
-    std::uint32_t samples = 0; ///< 0: the scene's
+    std::uint32_t samples = 0, seeds = 0; ///< 0: the scene's
     ComparisonOptions comparison;
     std::vector<measure::Numbers> sequences{measure::Numbers::independent, measure::Numbers::sobol};
     int threads = 0;
-    bool no_reference = false, no_timing = false, json = false, quiet = false, force = false;
+    bool no_reference = false, no_timing = false, images = false, json = false, quiet = false, force = false;
 };
 
 /// Calls `make`; its errors get the scene's name as a prefix.
@@ -54,6 +55,7 @@ SceneFile read_scene(const RenderArguments& options) {
 void apply_options(const RenderArguments& options, SceneFile& scene) {
     if (!options.samplers.empty()) scene.samplers = options.samplers;
     if (options.samples > 0) scene.samples = options.samples;
+    if (options.seeds > 0) scene.seeds = options.seeds;
     if (!options.size.empty() && !parse_pair(options.size, 4096, scene.width, scene.height))
         throw CLI::ValidationError("--size", "needs two counts such as 96x72");
 }
@@ -86,23 +88,18 @@ private:
     bool force_;
 };
 
-class PictureWriter {
+/// Makes all pictures; writes each as files, too, where that is asked for.
+class Pictures {
 public:
-    PictureWriter(const Folder& folder, const LoadedScene& scene, const RenderRun& run)
+    Pictures(const Folder* folder, const LoadedScene& scene, const RenderRun& run)
         : folder_(folder), scene_(scene), run_(run), exposure_(exposure(run.passes.front().comparison.reference)) {}
 
-    void picture(const std::string& stem, const std::vector<measure::Rgb>& values, const std::string& what) const {
-        const images::Picture linear = scene_picture(scene_.scene, scene_.points, values);
-        folder_.write(stem + ".exr", encode_rgb_exr(linear, notes(what)));
-        folder_.write(stem + ".png", encode_png(displayed(linear, exposure_), notes(what)));
-    }
-    void figure(const std::string& name, const std::vector<double>& values, const FigureImage& figure) const {
-        folder_.write(name + ".png",
-                      encode_png(figure_picture(scene_.scene, scene_.points, values, figure), notes(figure.title)));
-    }
-    void all(const std::vector<std::string>& stems) const {
+    PagePictures all(const std::vector<std::string>& stems) const {
         const Comparison& comparison = run_.passes.front().comparison;
-        picture("reference", comparison.reference, "reference");
+        PagePictures out;
+        out.width = static_cast<int>(scene_.scene.width);
+        out.height = static_cast<int>(scene_.scene.height);
+        out.reference = picture("reference", comparison.reference, "reference");
         const std::vector<Compared>& samplers = comparison.samplers;
         std::vector<double> variances;
         for (const Compared& one : samplers)
@@ -111,18 +108,32 @@ public:
         const PdfRange range = figure_range(variances);
         for (std::size_t i = 0; i < samplers.size(); ++i) {
             const std::string& name = samplers[i].spec.text;
-            picture(stems[i], samplers[i].rendering.first, name);
-            figure(stems[i] + "-variance", samplers[i].relative_variance_of_points,
-                   {"relative variance, " + name, range, ColourMap::rainbow, true});
-            figure(stems[i] + "-above", samplers[i].rendering.share_above,
-                   {"share above the horizon, " + name, {0.01, 1.0}, ColourMap::rainbow, true});
-            if (i > 0) efficiency(stems[i] + "-gain", samplers[i], samplers.front());
+            SamplerPictures of;
+            of.picture = picture(stems[i], samplers[i].rendering.first, name);
+            of.variance = figure(stems[i] + "-variance", samplers[i].relative_variance_of_points,
+                                 {"relative variance, " + name, range, ColourMap::rainbow, true});
+            of.above = figure(stems[i] + "-above", samplers[i].rendering.share_above,
+                              {"share above the horizon, " + name, {0.01, 1.0}, ColourMap::rainbow, true});
+            if (i > 0) of.gain = gain(stems[i] + "-gain", samplers[i], samplers.front());
+            out.samplers.push_back(std::move(of));
         }
+        return out;
     }
 
 private:
+    using Png = std::vector<std::uint8_t>;
+
+    Png picture(const std::string& stem, const std::vector<measure::Rgb>& values, const std::string& what) const {
+        const images::Picture linear = scene_picture(scene_.scene, scene_.points, values);
+        if (folder_) folder_->write(stem + ".exr", encode_rgb_exr(linear, notes(what)));
+        return kept(stem, encode_png(displayed(linear, exposure_), notes(what)));
+    }
+    Png figure(const std::string& name, const std::vector<double>& values, const FigureImage& figure) const {
+        return kept(name,
+                    encode_png(figure_picture(scene_.scene, scene_.points, values, figure), notes(figure.title)));
+    }
     /// Ratio of variances: above 1 the sampler is better than the baseline.
-    void efficiency(const std::string& name, const Compared& one, const Compared& base) const {
+    Png gain(const std::string& name, const Compared& one, const Compared& base) const {
         std::vector<double> gain;
         for (std::size_t i = 0; i < one.rendering.variance.size(); ++i) {
             const double a = base.rendering.variance[i], b = one.rendering.variance[i];
@@ -130,12 +141,16 @@ private:
         }
         const PdfRange ends = figure_range(gain);
         const double most = std::max({ends.high, 1.0 / ends.low, 8.0});
-        figure(name, gain,
-               {one.spec.text + " over " + base.spec.text, {1.0 / most, most}, ColourMap::diverging, false});
+        return figure(name, gain,
+                      {one.spec.text + " over " + base.spec.text, {1.0 / most, most}, ColourMap::diverging, false});
+    }
+    Png kept(const std::string& name, Png png) const {
+        if (folder_) folder_->write(name + ".png", png);
+        return png;
     }
     ImageNotes notes(const std::string& what) const { return {"acdf " ACDF_VERSION, what}; }
 
-    const Folder& folder_;
+    const Folder* folder_; ///< null: the page has them alone
     const LoadedScene& scene_;
     const RenderRun& run_;
     double exposure_;
@@ -168,7 +183,8 @@ RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, s
     run.options = options.comparison;
     run.options.samplers = std::move(samplers);
     run.options.samples = scene.file.samples;
-    run.options.reference = !options.no_reference;
+    if (scene.file.seeds > 0) run.options.render.seeds = scene.file.seeds;
+    run.options.reference = !options.no_reference && scene.file.reference;
     run.options.timing = !options.no_timing;
     const builder::Target target = light_target(options, scene.probe, scene.file.filter);
     std::vector<builder::SceneNormal> normals;
@@ -188,7 +204,7 @@ RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, s
     for (const measure::Numbers numbers : options.sequences) {
         run.options.render.numbers = numbers;
         // References are the same whatever the numbers.
-        const RenderPass* first = run.passes.empty() || options.no_reference ? nullptr : &run.passes.front();
+        const RenderPass* first = run.passes.empty() || !run.options.reference ? nullptr : &run.passes.front();
         RenderPass pass;
         pass.numbers = numbers;
         pass.comparison = compare(scene.scene, scene.points.points, builder, run.options, progress,
@@ -230,7 +246,8 @@ void run(const RenderArguments& options) {
     const Folder folder(options.output, options.force);
     const OutputFolder made(options.output);
     const std::vector<std::string> stems = file_stems(samplers);
-    refuse_outputs(options.output, stems, options.force, inputs(options, file, samplers));
+    refuse_outputs(options.output, options.images ? stems : std::vector<std::string>(), options.force,
+                   inputs(options, file, samplers));
 
     std::unique_ptr<LoadedScene> scene;
     const RenderRun done = of_scene(options, [&] {
@@ -238,19 +255,20 @@ void run(const RenderArguments& options) {
         remark(options, *scene);
         return render_all(options, *scene, std::move(samplers));
     });
-    PictureWriter(folder, *scene, done).all(stems);
-    const std::string json = render_json(*scene, done);
+    const PagePictures pictures = Pictures(options.images ? &folder : nullptr, *scene, done).all(stems);
+    const std::string json = render_json(*scene, done), page = render_html(*scene, done, pictures);
     folder.write("render.json", {json.begin(), json.end()});
+    folder.write("index.html", {page.begin(), page.end()});
     if (options.json) std::fputs(json.c_str(), stdout);
-    else put(render_table(*scene, done));
+    else put(render_table(*scene, done) + folder.at("index.html") + " shows the pictures\n");
 }
 
 void add_measurement_options(CLI::App& command, RenderArguments& options) {
     command
-        .add_option("--seeds", options.comparison.render.seeds,
+        .add_option("--seeds", options.seeds,
                     "Independent pictures of each sampler: what variances and their confidence come from")
         ->check(CLI::Range(3, 4096))
-        ->option_text("N [16]")
+        ->option_text("N [the scene's, or 16]")
         ->group("Measurement");
     const std::map<std::string, std::vector<measure::Numbers>> sequences{
         {"independent", {measure::Numbers::independent}},
@@ -327,17 +345,21 @@ void add_render(CLI::App& program, int& exit_code) {
         *program.add_subcommand("render", "Light a simple scene with several samplers, and compare");
     add_scene_options(command, *options);
     add_measurement_options(command, *options);
-    command.add_option("-o,--output", options->output, "The folder to write pictures and render.json to")
+    command.add_option("-o,--output", options->output, "The folder to write index.html and render.json to")
         ->required()
         ->type_name("DIR")
+        ->group("Output");
+    command
+        .add_flag("--images", options->images,
+                  "Also write each picture as .exr and .png, and each map of variance, gain and horizon as .png")
         ->group("Output");
     command.add_flag("-f,--force", options->force, "Replace existing files of the folder")->group("Output");
     add_threads(command, options->threads);
     add_json(command, options->json);
     add_quiet(command, options->quiet);
     command.footer(help_footer(
-        "Writes the exact picture, and a picture of each sampler (EXR, PNG). Maps show a sampler's relative "
-        "variance, its share of samples above the horizon and its gain over the first sampler, pixel by pixel. The "
+        "Writes index.html, one page without network or scripts: the exact picture and one of each sampler beside "
+        "it, with zoom and difference, and maps of variance, gain and horizon. render.json has the figures. The "
         "table has the relative variance of an estimate: the mean over pixels with its 95 % confidence interval, "
         "and the median. It also has the noise at 16, 64 and 256 samples, and the gain over the first sampler by "
         "equal samples and by equal time. The table reports where a baseline wins. Where a scene has objects that "

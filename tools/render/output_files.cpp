@@ -9,7 +9,8 @@
 namespace acdf::tools {
 namespace {
 
-const std::vector<std::string> names_of_all = {"reference.exr", "reference.png", "render.json"};
+const std::vector<std::string> names_of_page = {"index.html", "render.json"};
+const std::vector<std::string> names_of_reference = {"reference.exr", "reference.png"};
 
 /// Of a sampler; the first one has no gain.
 std::vector<std::string> names_of(const std::string& stem, bool is_first) {
@@ -22,7 +23,7 @@ std::vector<std::string> names_of(const std::string& stem, bool is_first) {
 
 std::vector<std::string> file_stems(const std::vector<SamplerSpec>& samplers) {
     std::vector<std::string> out;
-    std::set<std::string> used(names_of_all.begin(), names_of_all.end());
+    std::set<std::string> used(names_of_reference.begin(), names_of_reference.end());
     for (const SamplerSpec& spec : samplers) {
         std::string stem = file_stem(spec);
         std::vector<std::string> names = names_of(stem, out.empty());
@@ -39,7 +40,8 @@ std::vector<std::string> file_stems(const std::vector<SamplerSpec>& samplers) {
 
 void refuse_outputs(const std::string& folder, const std::vector<std::string>& stems, bool force,
                     const std::vector<std::string>& inputs) {
-    std::vector<std::string> names = names_of_all;
+    std::vector<std::string> names = names_of_page;
+    if (!stems.empty()) names.insert(names.end(), names_of_reference.begin(), names_of_reference.end());
     for (std::size_t i = 0; i < stems.size(); ++i)
         for (std::string& name : names_of(stems[i], i == 0)) names.push_back(std::move(name));
     for (const std::string& name : names) Output((std::filesystem::path(folder) / name).string(), force, inputs);

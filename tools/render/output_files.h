@@ -11,8 +11,8 @@ namespace acdf::tools {
 /// What the names of each sampler's files begin with, in their order: no two files have the same name.
 std::vector<std::string> file_stems(const std::vector<SamplerSpec>& samplers);
 
-/// Throws Failure where one of the files cannot be written to the folder: it exists and `force` is false, is one of
-/// `inputs`, is a folder, or the folder refuses.
+/// `stems`: empty where pictures are on the page alone. Throws Failure where one of the files cannot be written to
+/// the folder: it exists and `force` is false, is one of `inputs`, is a folder, or the folder refuses.
 void refuse_outputs(const std::string& folder, const std::vector<std::string>& stems, bool force,
                     const std::vector<std::string>& inputs);
 

@@ -16,7 +16,7 @@ using measure::dot;
 using measure::operator-;
 
 constexpr double kFar = 1e6; ///< where shadow rays still begin above their surface
-constexpr std::uint32_t kMostPixels = 4096, kMostSamples = 65536;
+constexpr std::uint32_t kMostPixels = 4096, kMostSamples = 65536, kMostSeeds = 4096;
 constexpr std::size_t kMostObjects = 1000, kMostSamplers = 64, kMostPortals = 64, kFaces = 6;
 
 measure::Vec3 point(const JsonValue& value) { return value.triple(-kFar, kFar); }
@@ -220,6 +220,11 @@ SceneFile parse_scene(const std::string& text) {
                                              [](const SceneMesh& mesh) { return mesh.up == input::UpAxis::y; });
     if (scene.materials.empty()) objects.fail("has no object that the camera sees");
     scene.samples = object.at("samples").count(kMostSamples);
+    object.if_has("seeds", [&](const JsonValue& value) {
+        scene.seeds = value.count(kMostSeeds);
+        if (scene.seeds < 3) value.fail("is below 3");
+    });
+    object.if_has("reference", [&](const JsonValue& value) { scene.reference = value.truth(); });
     object.at("samplers").each(kMostSamplers, [&](const JsonValue& value) {
         scene.samplers.push_back(value.text());
     });

@@ -44,6 +44,8 @@ struct SceneFile {
     AcdfFilter filter = ACDF_FILTER_BILINEAR; ///< how the light is looked up
     std::uint32_t width = 96, height = 72;
     std::uint32_t samples = 20; ///< of each estimate
+    std::uint32_t seeds = 0;    ///< 0: the program's
+    bool reference = true;      ///< exact, by summation; else the mean of all pictures
     std::vector<std::string> samplers;
 };
 

@@ -3,6 +3,7 @@
 #include "tools/cli/noise.h"
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
+#include "tools/sweep/cost.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,11 +35,16 @@ bool tried_larger(const Sweep& sweep, const SweepRow& best) {
                        [&](const SweepRow& row) { return row.ours() && row.bytes > best.bytes; });
 }
 
+/// Of a BRDF.
+double variance_of(const SweepRow& row, measure::Numbers numbers) {
+    return numbers == measure::Numbers::sobol && row.sobol == row.sobol ? row.sobol : row.relative_variance;
+}
+
 std::string sentence_of(const Sweep& sweep, const Recommended& recommended) {
     const SweepRow& best = sweep.rows[recommended.row];
     const VisibleNoise& v = sweep.visible;
     const std::string size = size_text(best);
-    const double variance = variance_in(best, open_alone, sweep.numbers);
+    const double variance = variance_of(best, sweep.numbers);
     std::string has = "a relative variance of " + short_number(variance) + ", " + noise_text(variance, v.spp) +
                       " noise at " + spp_text(v);
     if (sweep.numbers == measure::Numbers::sobol) has += " from a scrambled Sobol' sequence";
@@ -49,32 +55,17 @@ std::string sentence_of(const Sweep& sweep, const Recommended& recommended) {
     return size + " reaches " + has + "; beyond it you gain nothing visible.";
 }
 
-/// Of files that know no surface: what pictures have of them.
-std::string picture_sentence(const Sweep& sweep, const Recommended& recommended) {
-    const SweepRow &best = sweep.rows[recommended.row], &full = sweep.rows[sweep.reference];
-    const VisibleNoise& v = sweep.visible;
-    const auto noise = [&](const SweepRow& row) {
-        return noise_text(variance_in(row, open_alone, sweep.numbers), v.spp);
-    };
-    std::string text = size_text(best) + " is enough: a diffuse surface has " + noise(best) + " noise with it at " +
-                       spp_text(v) + ", and " + noise(full) + " with the " + full.label;
-    if (recommended.reached) return text + ", which cannot be seen.";
-    return text + "; no other size or fit tried lowers it by more than 5 %.";
-}
-
-std::string picture_rule(const Sweep& sweep) {
-    const VisibleNoise& v = sweep.visible;
-    std::string text =
-        "Rule: among the files whose noise on a diffuse surface is low enough, the one that takes least memory, or "
-        "one of up to a quarter more with less noise. Low enough is at most 5 % above the least noise of all "
-        "files, or at most " +
-        percent(v.threshold) + " at " + spp_text(v) +
-        ", in each of four situations: with nothing hidden, and behind the sphere and the wall of the demo scene; "
-        "each with samples of the light alone, and with half of the samples from the cosine. ";
-    text += sweep.timed ? "Noise is compared after the same time. Besides sampling, each sample costs " +
-                              short_number(sweep.costs.shadow_ray_ns) + " ns (--shadow-ray-ns)."
-                        : "Noise is compared after the same number of samples, as nothing was timed.";
-    if (sweep.numbers == measure::Numbers::sobol) text += " Samples come from a scrambled Sobol' sequence.";
+std::string renderer_rule(const Sweep& sweep) {
+    std::string text = "Rule: of the kind of file with the least noise the smallest whose noise is at most 5 % "
+                       "above that. Noise is "
+                       "the geometric mean over a diffuse and a glossy surface, ";
+    text += sweep.on_mesh ? "with what the mesh hides" : "with nothing hidden and with half of the sky hidden";
+    text +=
+        "; below " + percent(sweep.visible.threshold) + " at " + spp_text(sweep.visible) + " it cannot be seen. ";
+    text += sweep.timed ? "It is compared after the same time, of which a sample takes " +
+                              short_number(sweep.costs.shadow_ray_ns) + " ns beside its sampling (--shadow-ray-ns)."
+                        : "It is compared after the same samples: nothing was timed.";
+    if (sweep.numbers == measure::Numbers::sobol) text += " Samples are of a scrambled Sobol' sequence.";
     return text;
 }
 
@@ -96,14 +87,14 @@ BaselineComparison compare(const Sweep& sweep, std::size_t index, const SweepRow
     BaselineComparison out;
     out.row = index;
     out.bytes = static_cast<double>(baseline.bytes) / static_cast<double>(best.bytes);
-    out.variance = baseline.shaded() / best.shaded();
+    out.variance = baseline.relative_variance / best.relative_variance;
     out.time = ratio_interval(baseline.times.sample, best.times.sample);
-    if (std::isinf(baseline.shaded())) {
+    if (std::isinf(baseline.relative_variance)) {
         out.verdict = Verdict::ours; // biased, however fast
         return out;
     }
-    const Interval cost = cost_ratio(baseline, best, open_alone, sweep.costs);
-    if (!cost.known() || !(best.shaded() > 0.0)) return out;
+    const Interval cost = cost_ratio(baseline, best, light_alone, sweep.costs);
+    if (!cost.known() || !(best.relative_variance > 0.0)) return out;
     out.equal_time = {cost.value * out.variance, cost.low * out.variance, cost.high * out.variance};
     out.verdict = out.equal_time.low > 1.0    ? Verdict::ours
                   : out.equal_time.high < 1.0 ? Verdict::baseline
@@ -136,26 +127,22 @@ void add_time_findings(const Sweep& sweep, Advice& advice, const SweepRow& best)
     if (!even.empty()) advice.findings.push_back("Too close to call at equal time: " + even + ".");
     if (!ours.empty()) advice.findings.push_back("At equal time the file wins against: " + ours + ".");
     for (const BaselineComparison& c : advice.comparisons)
-        if (std::isinf(sweep.rows[c.row].shaded()))
+        if (std::isinf(sweep.rows[c.row].relative_variance))
             advice.findings.push_back(capital(sweep.rows[c.row].label) +
-                                      " is biased if used alone: its pdf is 0 in directions with light.");
+                                      " is biased by itself: it has no pdf where there is light.");
 }
 
 /// Who wins sample for sample, whatever the time.
 std::string sample_finding(const Sweep& sweep, const SweepRow& best) {
-    // The light's own sum is what no picture shows; who misses a file in it finds it here.
-    const std::string of =
-        sweep.kind == SweepKind::environment ? "than this file on the light itself" : "than this file";
     std::string names;
     for (const SweepRow& baseline : sweep.rows)
         if (!baseline.ours() && baseline.relative_variance < best.relative_variance)
             names += (names.empty() ? "" : "; ") + baseline.label + " (" +
                      short_number(baseline.relative_variance) + ", " + to_readable_size(baseline.bytes) + ")";
-    if (names.empty())
-        return "At equal samples no baseline is less noisy " + of + " (relative variance " +
-               short_number(best.relative_variance) + ").";
-    return "At equal samples these are less noisy " + of + " (relative variance " +
-           short_number(best.relative_variance) + "): " + names + ".";
+    const std::string text =
+        " less noisy than this file (relative variance " + short_number(best.relative_variance) + ")";
+    if (names.empty()) return "Sample for sample no baseline is" + text + ".";
+    return "Sample for sample these are" + text + ": " + names + ".";
 }
 
 /// Another file of acdf's that is not visibly noisy either, and better at equal time.
@@ -177,32 +164,60 @@ void add_own_finding(const Sweep& sweep, Advice& advice) {
 }
 
 void add_findings(const Sweep& sweep, Advice& advice) {
-    const SweepRow& best = sweep.rows[advice.recommended.row];
-    for (const SituationAdvice& one : advice.situations) advice.findings.push_back(one.sentence);
-    if (!advice.situations.empty())
+    advice.findings.push_back(sample_finding(sweep, sweep.rows[advice.recommended.row]));
+    add_time_findings(sweep, advice, sweep.rows[advice.recommended.row]);
+    add_own_finding(sweep, advice);
+    advice.findings.push_back("All of this is under light that is the same from everywhere. Under other light mix "
+                              "with samples of the light, "
+                              "by the exact pdfs that each file stores; `acdf render` shows it on scenes.");
+}
+
+/// What of the figures a reader should know before trusting them.
+void add_renderer_findings(const Sweep& sweep, Advice& advice) {
+    for (const RendererAdvice& one : advice.renderers)
+        if (one.other && one.other->variance.value < kSameNoise * kSameNoise)
+            advice.findings.push_back("With " + renderer_text(one.renderer) + ", `" +
+                                      sweep.rows[one.other->row].label + "` of " +
+                                      to_readable_size(sweep.rows[one.other->row].file_bytes) +
+                                      " has at most 5 % more noise: take it where memory or code counts more.");
+    std::string exact;
+    for (const SweepRow& row : sweep.rows)
+        if (!row.ours() && row.relative_variance < 1e-6) exact += (exact.empty() ? "" : ", ") + row.label;
+    if (!exact.empty())
+        advice.findings.push_back("On the light alone these have no variance: " + exact +
+                                  ". Cosines, lobes and shadows decide in pictures.");
+    if (!sweep.on_mesh)
         advice.findings.push_back(
-            "The rest of the noise comes from the cosine, which an environment file does not take into account. "
-            "Files with a pdf for each normal lower it: see `acdf sweep --kind local`.");
-    advice.findings.push_back(sample_finding(sweep, best));
-    add_time_findings(sweep, advice, best);
-    if (advice.situations.empty()) add_own_finding(sweep, advice);
-    if (sweep.kind == SweepKind::brdf)
-        advice.findings.push_back(
-            "These figures are for uniform light. Under other light, combine the file with samples of the light by "
-            "MIS, as its pdfs are exact; `acdf render` compares such samplers on scenes.");
-    else if (sweep.kind == SweepKind::visibility)
-        advice.findings.push_back(
-            "These figures are for the scene as it was when the file was made, with diffuse materials and points "
-            "all over it. `acdf render` measures what a camera sees, also with portals and visibility caches. "
-            "Where the scene moves, the file stays unbiased and becomes noisier.");
-    else if (sweep.kind == SweepKind::local)
-        advice.findings.push_back(
-            "These figures are without occluders. Where the brightest light is hidden, samplers that follow the "
-            "light closely lose most of their lead over a plain CDF. Combine them there with cosine or BRDF "
-            "samples by MIS, as the pdfs of the file are exact; `acdf render` compares such samplers on scenes.");
+            "Half of the sky is hidden by a wall through each point. With a mesh of your scene, "
+            "`--scene`, its own shadows decide, and files of `acdf local --visibility` take part.");
 }
 
 } // namespace
+
+Recommended recommended_row(const std::vector<SweepRow>& rows, const VisibleNoise& visible,
+                            measure::Numbers numbers) {
+    Recommended out;
+    bool found = false;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const double variance = variance_of(rows[i], numbers);
+        if (!rows[i].ours() || !(variance == variance)) continue;
+        const bool reached = variance <= visible.largest_variance();
+        const SweepRow& best = rows[out.row];
+        const bool better = !found || (reached != out.reached ? reached
+                                       : reached              ? rows[i].bytes < best.bytes
+                                                              : variance < variance_of(best, numbers));
+        if (better) out = {i, reached};
+        found = true;
+    }
+    if (!found) throw Failure("none of the files has a known variance");
+    return out;
+}
+
+bool Advice::recommends(std::size_t row) const {
+    if (!command.empty()) return row == recommended.row;
+    return std::any_of(renderers.begin(), renderers.end(),
+                       [&](const RendererAdvice& one) { return one.row == row; });
+}
 
 std::string size_text(const SweepRow& row) {
     if (row.file_bytes == 0) return to_readable_size(row.bytes);
@@ -231,13 +246,17 @@ std::string shell_word(const std::string& word) {
 
 Advice advise(const Sweep& sweep) {
     Advice out;
-    out.recommended = recommended_row(sweep.rows, sweep.visible, sweep.costs, sweep.numbers);
+    if (sweep.kind == SweepKind::probe) {
+        out.renderers = advise_renderers(sweep);
+        out.rule = renderer_rule(sweep);
+        add_renderer_findings(sweep, out);
+        return out;
+    }
+    out.recommended = recommended_row(sweep.rows, sweep.visible, sweep.numbers);
     const SweepRow& best = sweep.rows[out.recommended.row];
-    out.situations = situations_of(sweep, best);
-    const bool pictures = !out.situations.empty();
-    out.sentence = pictures ? picture_sentence(sweep, out.recommended) : sentence_of(sweep, out.recommended);
-    out.rule = pictures ? picture_rule(sweep) : rule_of(sweep);
-    out.command = sweep.command + " " + best.options + " -o " + shell_word(sweep.output);
+    out.sentence = sentence_of(sweep, out.recommended);
+    out.rule = rule_of(sweep);
+    out.command = command_text(sweep, best);
     for (std::size_t i = 0; i < sweep.rows.size(); ++i)
         if (!sweep.rows[i].ours()) out.comparisons.push_back(compare(sweep, i, best));
     add_findings(sweep, out);

@@ -1,8 +1,7 @@
 // What the figures of a sweep say, in words: which file to make, and where it is not the best there is.
 #pragma once
 
-#include "tools/sweep/recommend.h"
-#include "tools/sweep/situations.h"
+#include "tools/sweep/renderers.h"
 #include "tools/sweep/sweep.h"
 #include "tools/sweep/timing.h"
 
@@ -21,14 +20,27 @@ struct BaselineComparison {
     Verdict verdict = Verdict::unknown; ///< at equal time; even: the interval holds 1
 };
 
+struct Recommended {
+    std::size_t row = 0;
+    bool reached = false; ///< its noise is too small to see
+};
+/// Of a BRDF the smallest file whose variance is at most visible.largest_variance(), or the least noisy. There must
+/// be a file of known variance.
+Recommended recommended_row(const std::vector<SweepRow>& rows, const VisibleNoise& visible,
+                            measure::Numbers numbers = measure::Numbers::independent);
+
 struct Advice {
+    std::vector<RendererAdvice> renderers; ///< probe
+    std::string rule;                      ///< by which files were chosen
+    std::vector<std::string> findings;     ///< where baselines win and where they do not; a sentence each
+
+    // BRDF:
     Recommended recommended;
-    std::string sentence;                    ///< which size, and what it gives
-    std::string rule;                        ///< by which it was chosen
-    std::string command;                     ///< exactly what makes the file
-    std::vector<SituationAdvice> situations; ///< environment
+    std::string sentence; ///< which size, and what it gives
+    std::string command;  ///< exactly what makes the file
     std::vector<BaselineComparison> comparisons;
-    std::vector<std::string> findings; ///< where baselines win and where they do not; a sentence each
+
+    bool recommends(std::size_t row) const;
 };
 
 Advice advise(const Sweep& sweep);

@@ -1,21 +1,19 @@
-// What renderers use without acdf, as rows of a sweep. The first is the reference of times.
+// What renderers use without acdf, as rows of a sweep of a probe.
 #pragma once
 
-#include "build/accuracy/local.h"
+#include "compress/target.h"
 #include "tools/sweep/build.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace acdf::tools {
 
-// Targets (compress::of_texels) must outlive them, and have one channel, else std::invalid_argument.
-
-/// Samplers of the probe's light: the full-resolution CDF, the same downsampled to about each budget, an alias
-/// table, a hierarchical warp. `peaks`: of the light in each texel; empty: its values.
-std::vector<Candidate> environment_baselines(const compress::Target& target, const std::vector<float>& peaks,
-                                             const SweepOptions& options);
-
-/// Samplers of what a diffuse surface reflects.
-std::vector<Candidate> local_baselines(const compress::Target& target, const std::vector<build::Normal>& normals);
+/// The full-resolution CDF, which is the reference of times; an alias table, a hierarchical warp, the same CDF of a
+/// picture downsampled to about each budget; tiles that are weighted at each point; the cosine. `target`
+/// (compress::of_texels) must outlive them and have one channel, else std::invalid_argument. `peaks`: of the light
+/// in each texel; empty: its values.
+std::vector<Candidate> probe_baselines(const compress::Target& target, const std::vector<float>& peaks,
+                                       const std::vector<std::uint64_t>& budgets);
 
 } // namespace acdf::tools

@@ -29,9 +29,9 @@ builder::BrdfOptions options_of(const Step& step, const input::Brdf& brdf, const
     out.source.sha256 = brdf.sha256;
     out.channels = sweep.target.channels;
     out.goal = builder::Goal::of_budget(step.budget);
-    out.sharing = step.fit == "variance";
-    if (step.fit != "cdf" && step.fit != "uniform") return out;
-    out.fit = step.fit == "cdf" ? ACDF_FIT_CDF : ACDF_FIT_UNIFORM;
+    out.sharing = step.file == "variance";
+    if (step.file != "cdf" && step.file != "uniform") return out;
+    out.fit = step.file == "cdf" ? ACDF_FIT_CDF : ACDF_FIT_UNIFORM;
     // Three segments in theta_h for one in phi_h, as in Lawrence et al. 2005, §6.2.
     const double bins = brdf.isotropic ? 32.0 : 32.0 * 16.0, cells = double(cells_in(step.budget)) / bins;
     out.phi_segments = static_cast<std::uint32_t>(std::max(2.0, std::round(std::sqrt(cells / 3.0))));
@@ -39,10 +39,19 @@ builder::BrdfOptions options_of(const Step& step, const input::Brdf& brdf, const
     return out;
 }
 
+std::vector<Step> steps_of(const SweepOptions& options) {
+    const std::vector<std::uint64_t> budgets =
+        options.budgets.empty() ? std::vector<std::uint64_t>{4096, 16384, 65536, 262144} : options.budgets;
+    std::vector<Step> out;
+    for (const std::string& file : options.files.empty() ? brdf_files() : options.files)
+        for (std::uint64_t budget : budgets) out.push_back({file, budget});
+    return out;
+}
+
 std::string text_of(const Step& step, const builder::BrdfOptions& o) {
-    if (step.fit == "variance") return "--budget " + budget_text(step.budget);
-    if (step.fit == "separate") return "--no-sharing --budget " + budget_text(step.budget);
-    return "--fit " + step.fit + " " + knots_text(o.phi_segments, o.theta_segments);
+    if (step.file == "variance") return "--budget " + budget_text(step.budget);
+    if (step.file == "separate") return "--no-sharing --budget " + budget_text(step.budget);
+    return "--fit " + step.file + " " + knots_text(o.phi_segments, o.theta_segments);
 }
 
 const char* brdf_label(const std::string& fit) {
@@ -89,7 +98,8 @@ Candidate make_file(const input::Brdf& brdf, const SweepOptions& sweep, const St
     builder::BrdfFile made;
     throw_unless_built(builder::brdf(builder::described(brdf), options, made));
     Candidate out = file_candidate(std::move(made.bytes));
-    out.row.label = brdf_label(step.fit);
+    out.row.label = brdf_label(step.file);
+    out.row.command = "brdf";
     out.row.options = text_of(step, options);
     take(out.row, made.accuracy);
     return out;
@@ -156,14 +166,16 @@ void add_pictures(Sweep& sweep, const compress::Reflected& reflected, const std:
     const PdfImage full = pdf_image(map, own);
     sweep.range = automatic_range(full);
     add_colour_bar(sweep);
-    add_picture(sweep, full, {}, {}, "The BRDF itself times cosine, seen from 45 degrees",
-                "How much light from each direction is reflected to a view at 45 degrees, in false colour; the "
-                "lower half is below the surface.");
-    for (std::size_t i : pictured(candidates, sweep)) {
+    add_picture(
+        sweep, full, {}, {}, "The BRDF itself times cosine, seen from 45 degrees",
+        "The directions of light that are reflected to a view at 45 degrees, in false colour; the lower half "
+        "is below the surface.");
+    for (std::size_t i : largest_of_each_kind(candidates)) {
         const PlottedView plotted{candidates[i].file->file.brdf(), angles};
-        add_picture(sweep, pdf_image(map, pdf_of(plotted)), knot_opacity(plotted, map), {},
-                    picture_title(candidates[i].row),
-                    "The pdf of this file for the same view, in the same colours, with the borders of its cells.");
+        add_picture(
+            sweep, pdf_image(map, pdf_of(plotted)), knot_opacity(plotted, map), {},
+            picture_title(candidates[i].row),
+            "The pdf that this file has for the same view, in the same colours, with the borders of its cells.");
     }
 }
 
@@ -182,6 +194,11 @@ void add_sobol(const compress::Reflected& reflected, const std::vector<SampledPo
 
 } // namespace
 
+const std::vector<std::string>& brdf_files() {
+    static const std::vector<std::string> names{"variance", "separate", "cdf", "uniform"};
+    return names;
+}
+
 Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const build::Progress& progress) {
     Sweep sweep;
     sweep.kind = SweepKind::brdf;
@@ -193,8 +210,8 @@ Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const bui
     sweep.conditions = build::kMeasuredViews;
     std::vector<Candidate> candidates;
     build_all(
-        sweep, candidates, steps_of(sweep.kind, options),
-        [&](const Step& step) { return make_file(brdf, options, step); }, part(0.0, 0.7));
+        sweep, candidates, steps_of(options), [&](const Step& step) { return make_file(brdf, options, step); },
+        part(0.0, 0.7));
     part(0.7, 0.0)(0.0, "measuring baselines");
     sweep.reference = candidates.size();
     std::vector<SampledPoint> sampled;

@@ -1,6 +1,5 @@
 #include "tools/sweep/build.h"
 
-#include "build/accuracy/local.h"
 #include "build/own_terms.h"
 #include "measure/samplers/light_samplers.h"
 #include "tools/cli/sizes.h"
@@ -9,44 +8,16 @@
 #include "tools/plot/knots.h"
 #include "tools/plot/local.h"
 #include "tools/sweep/advice.h"
-#include "tools/sweep/recommend.h"
 #include "tools/sweep/timing.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 
 namespace acdf::tools {
 
-const char* to_string(SweepKind kind) {
-    constexpr const char* names[] = {"env", "local", "visibility", "brdf"};
-    return names[static_cast<std::size_t>(kind)];
-}
-
-const std::vector<std::string>& fits_of(SweepKind kind) {
-    static const std::vector<std::string> environment{"variance", "cdf", "pdf", "uniform"},
-        local{"variance", "fast", "separate", "cdf"}, visibility{"visibility", "variance"},
-        brdf{"variance", "separate", "cdf", "uniform"};
-    const std::vector<std::string>* const fits[] = {&environment, &local, &visibility, &brdf};
-    return *fits[static_cast<std::size_t>(kind)];
-}
-
-std::vector<std::string> default_fits(SweepKind kind) {
-    return kind == SweepKind::local ? std::vector<std::string>{"variance", "fast", "cdf"} : fits_of(kind);
-}
-
-std::vector<std::uint64_t> default_budgets(SweepKind kind) {
-    switch (kind) {
-    case SweepKind::environment:
-        return {4096, 16384, 65536, 262144, 1000000};
-    case SweepKind::local:
-        return {16384, 65536, 262144, 1000000, 4000000};
-    case SweepKind::visibility:
-        return {1000000, 4000000};
-    default:
-        return {4096, 16384, 65536, 262144};
-    }
-}
+const char* to_string(SweepKind kind) { return kind == SweepKind::probe ? "probe" : "brdf"; }
 
 StoredFile::StoredFile(std::vector<std::uint8_t> made) : bytes(std::move(made)) {
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
@@ -70,23 +41,12 @@ Candidate baseline_candidate(std::string system, std::string label,
     return out;
 }
 
-std::vector<std::uint64_t> budgets_of(SweepKind kind, const SweepOptions& options) {
-    return options.budgets.empty() ? default_budgets(kind) : options.budgets;
-}
-
-std::vector<Step> steps_of(SweepKind kind, const SweepOptions& options) {
-    std::vector<Step> out;
-    const std::vector<std::uint64_t> budgets = budgets_of(kind, options);
-    for (const std::string& fit : options.fits.empty() ? default_fits(kind) : options.fits)
-        for (std::uint64_t budget : budgets) out.push_back({fit, budget});
-    return out;
-}
-
 void take_options(Sweep& sweep, const SweepOptions& options) {
     sweep.visible = options.visible;
     sweep.timed = options.timing;
     sweep.costs.shadow_ray_ns = options.shadow_ray_ns;
     sweep.numbers = options.numbers;
+    sweep.heuristic = options.heuristic;
 }
 
 measure::MapLight map_light(const compress::Target& target, const SweepOptions& options) {
@@ -104,17 +64,16 @@ void build_all(Sweep& sweep, std::vector<Candidate>& candidates, const std::vect
         try {
             made = make(steps[i]);
         } catch (const std::runtime_error& error) {
-            last_failure =
-                "--fit " + steps[i].fit + " at " + to_readable_size(steps[i].budget) + ": " + error.what();
+            last_failure = steps[i].file + " at " + to_readable_size(steps[i].budget) + ": " + error.what();
             sweep.notes.push_back(last_failure);
             continue;
         }
         made.row.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         made.row.system = "acdf";
-        made.row.fit = steps[i].fit;
+        made.row.file = steps[i].file;
         made.row.bytes = made.sampler->bytes();
         made.row.file_bytes = made.file->bytes.size();
-        const bool again = !candidates.empty() && candidates.back().row.fit == made.row.fit &&
+        const bool again = !candidates.empty() && candidates.back().row.file == made.row.file &&
                            candidates.back().row.file_bytes == made.row.file_bytes;
         if (!again) candidates.push_back(std::move(made));
     }
@@ -124,11 +83,10 @@ void build_all(Sweep& sweep, std::vector<Candidate>& candidates, const std::vect
 void finish_rows(Sweep& sweep, std::vector<Candidate> candidates, const std::vector<measure::ShadingPoint>& points,
                  const SweepOptions& options, const build::Progress& progress) {
     if (options.timing) {
-        std::vector<Timed> samplers;
-        for (const Candidate& candidate : candidates)
-            samplers.push_back({candidate.sampler.get(), candidate.has_pdf});
+        std::vector<const measure::LightSampler*> samplers;
+        for (const Candidate& candidate : candidates) samplers.push_back(candidate.sampler.get());
         const auto partner = measure::cosine_sampler();
-        samplers.push_back({partner.get(), true});
+        samplers.push_back(partner.get());
         std::vector<SweepTimes> times = time_samplers(samplers, points, options.rounds, progress);
         sweep.costs.cosine_ns =
             median_interval(times.back().sample).value + median_interval(times.back().pdf).value;
@@ -155,25 +113,10 @@ std::uint32_t cells_in(std::uint64_t budget) {
     return static_cast<std::uint32_t>(std::max(4.0, (static_cast<double>(budget) - 900.0) / 4.4));
 }
 
-std::vector<std::size_t> pictured(const std::vector<Candidate>& candidates, const Sweep& sweep) {
-    std::vector<SweepRow> rows;
-    for (const Candidate& candidate : candidates) {
-        rows.push_back(candidate.row);
-        rows.back().times = {};
-    }
-    const std::size_t best = recommended_row(rows, sweep.visible, sweep.costs, sweep.numbers).row;
-    std::size_t smallest = best, paper = rows.size();
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (!rows[i].ours()) continue;
-        if (rows[i].fit == rows[best].fit && rows[i].bytes < rows[smallest].bytes) smallest = i;
-        const auto miss = [&](std::size_t k) {
-            return std::abs(std::log(double(rows[k].bytes) / double(rows[best].bytes)));
-        };
-        if (rows[i].fit == "cdf" && (paper == rows.size() || miss(i) < miss(paper))) paper = i;
-    }
+std::vector<std::size_t> largest_of_each_kind(const std::vector<Candidate>& candidates) {
     std::vector<std::size_t> out;
-    for (std::size_t i : {smallest, best, paper})
-        if (i < rows.size() && std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
+    for (std::size_t i = 0; i < candidates.size() && candidates[i].row.ours(); ++i)
+        if (i + 1 == candidates.size() || candidates[i + 1].row.file != candidates[i].row.file) out.push_back(i);
     return out;
 }
 
@@ -195,22 +138,12 @@ void add_colour_bar(Sweep& sweep) {
     sweep.colour_bar = encode_png(false_colour(ramp, sweep.range), {"acdf", "colours"});
 }
 
-std::string picture_title(const SweepRow& row) {
-    char text[96];
-    std::snprintf(text, sizeof text, ", relative variance %.3g", row.relative_variance);
-    return row.label + ", " + size_text(row) + text;
-}
+std::string picture_title(const SweepRow& row) { return row.label + ", " + size_text(row); }
 
 build::Progress part_of(const build::Progress& progress, double begin, double width) {
     return [&progress, begin, width](double share, const char* what) {
         if (progress) progress(begin + width * share, what);
     };
-}
-
-std::vector<measure::ShadingPoint> timed_points() {
-    std::vector<measure::ShadingPoint> points;
-    for (const build::Normal& n : build::random_normals(4096)) points.push_back({{n[0], n[1], n[2]}, {}});
-    return points;
 }
 
 } // namespace acdf::tools

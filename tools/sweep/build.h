@@ -9,11 +9,9 @@
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
-#include <chrono>
 #include <functional>
 #include <memory>
-#include <stdexcept>
-#include <utility>
+#include <string>
 #include <vector>
 
 namespace acdf::tools {
@@ -30,7 +28,6 @@ struct StoredFile {
 struct Candidate {
     SweepRow row;
     std::shared_ptr<const measure::LightSampler> sampler;
-    bool has_pdf = true;
     std::shared_ptr<const StoredFile> file; ///< of acdf
     std::shared_ptr<const void> tables;     ///< what the sampler refers to
 };
@@ -41,14 +38,11 @@ Candidate file_candidate(std::vector<std::uint8_t> bytes);
 Candidate baseline_candidate(std::string system, std::string label,
                              std::shared_ptr<const measure::LightSampler> sampler);
 
-/// One file to be made: a fit at a size.
+/// One file to be made: a kind at a size.
 struct Step {
-    std::string fit;
+    std::string file;
     std::uint64_t budget = 0;
 };
-std::vector<std::uint64_t> budgets_of(SweepKind kind, const SweepOptions& options);
-/// All fits at all budgets.
-std::vector<Step> steps_of(SweepKind kind, const SweepOptions& options);
 
 /// What the advice goes by.
 void take_options(Sweep& sweep, const SweepOptions& options);
@@ -57,8 +51,8 @@ void take_options(Sweep& sweep, const SweepOptions& options);
 measure::MapLight map_light(const compress::Target& target, const SweepOptions& options);
 
 /// Fills `candidates` with what `make` builds for each step, timed. Steps whose goal is out of reach
-/// (std::runtime_error) become notes, files that equal the one before them in fit and size are left out. Throws
-/// Failure where nothing could be made.
+/// (std::runtime_error) become notes, files that equal the one before them in kind and size are left out. Throws
+/// std::invalid_argument where nothing could be made.
 void build_all(Sweep& sweep, std::vector<Candidate>& candidates, const std::vector<Step>& steps,
                const std::function<Candidate(const Step&)>& make, const build::Progress& progress);
 
@@ -74,10 +68,8 @@ std::string budget_text(std::uint64_t bytes);
 /// Cells that a budget pays for in curves of their own, about 4.4 bytes each beside what any file takes.
 std::uint32_t cells_in(std::uint64_t budget);
 
-/// Which files are pictured beside the source: the smallest and the recommended one of the first fit. Where the
-/// paper's fit was asked for, also its file nearest in size to the recommended one. Indices of candidates that are
-/// there.
-std::vector<std::size_t> pictured(const std::vector<Candidate>& candidates, const Sweep& sweep);
+/// What is pictured: the last of each kind.
+std::vector<std::size_t> largest_of_each_kind(const std::vector<Candidate>& candidates);
 
 constexpr int kPictureWidth = 640;
 
@@ -92,8 +84,5 @@ std::string picture_title(const SweepRow& row);
 
 /// The part [begin, begin + width] of a progress; valid as long as that is.
 build::Progress part_of(const build::Progress& progress, double begin, double width);
-
-/// Shading points with random normals, on which samplers of light are timed.
-std::vector<measure::ShadingPoint> timed_points();
 
 } // namespace acdf::tools

@@ -2,7 +2,6 @@
 #include "build/text/format_names.h"
 #include "input/brdf/brdf.h"
 #include "input/file_name.h"
-#include "tools/cli/choice.h"
 #include "tools/cli/comma_list.h"
 #include "tools/cli/help.h"
 #include "tools/cli/mesh_visibility.h"
@@ -18,7 +17,9 @@
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
 #include "tools/sweep/advice.h"
+#include "tools/sweep/files.h"
 #include "tools/sweep/page.h"
+#include "tools/sweep/renderers.h"
 #include "tools/sweep/sweep.h"
 #include "tools/sweep/text.h"
 
@@ -38,7 +39,6 @@ namespace fs = std::filesystem;
 
 struct SweepArguments {
     std::string source, folder;
-    std::optional<SweepKind> kind;
     std::vector<std::string> budgets;
     input::ProbeOptions input;
     SweepOptions sweep;
@@ -50,7 +50,7 @@ struct SweepArguments {
     bool given(const char* option) const { return command->get_option(option)->count() > 0; }
 };
 
-/// What --kind is where it is not given: files of BRDFs and what is no file but a model's name.
+/// By its name: files of BRDFs, and what is no file but a model's name, are BRDFs.
 SweepKind kind_of(const std::string& source) {
     const std::string extension = input::lower_extension(source);
     for (const char* brdf : {".binary", ".bsdf", ".pbsdf", ".npy"})
@@ -59,7 +59,7 @@ SweepKind kind_of(const std::string& source) {
     const std::string model = source.substr(0, source.find(':'));
     for (const char* name : {"lambert", "ggx", "cook-torrance", "blinn"})
         if (model == name && !fs::exists(source, ignored)) return SweepKind::brdf;
-    return SweepKind::environment;
+    return SweepKind::probe;
 }
 
 void check_options(SweepArguments& options, SweepKind kind) {
@@ -69,21 +69,24 @@ void check_options(SweepArguments& options, SweepKind kind) {
         options.sweep.budgets.push_back(*bytes);
     }
     std::sort(options.sweep.budgets.begin(), options.sweep.budgets.end());
-    const std::vector<std::string>& fits = fits_of(kind);
-    for (const std::string& fit : options.sweep.fits)
-        if (std::find(fits.begin(), fits.end(), fit) == fits.end()) {
-            std::string names;
-            for (const std::string& name : fits) names += (names.empty() ? "" : ", ") + name;
-            throw CLI::ValidationError("--fits", std::string("for --kind ") + to_string(kind) + " are " + names);
+    std::vector<std::string> names = brdf_files();
+    if (kind == SweepKind::probe) {
+        names.clear();
+        for (const FileKind& each : file_kinds())
+            if (options.scene.given() || each.needs != Given::position) names.push_back(each.name);
+    }
+    for (const std::string& file : options.sweep.files)
+        if (std::find(names.begin(), names.end(), file) == names.end()) {
+            std::string all;
+            for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+            throw CLI::ValidationError("--files", "'" + file + "' is none of " + all);
         }
     if (kind == SweepKind::brdf)
-        for (const char* option : {"--projection", "--domain", "--filter", "--bad-pixels", "--on-black"})
+        for (const char* option :
+             {"--projection", "--domain", "--filter", "--bad-pixels", "--on-black", "--scene", "--heuristic"})
             if (options.given(option)) throw CLI::ValidationError(option, "is for environment maps");
-    if ((kind == SweepKind::visibility) != options.scene.given())
-        throw CLI::ValidationError("--scene", "is for --kind visibility, and that needs one");
-    if (kind == SweepKind::visibility && options.input.domain == input::Domain::octahedral)
-        throw CLI::ValidationError("--domain",
-                                   "is latlong with --kind visibility: points of a mesh see lat-long texels");
+    if (options.scene.given() && options.input.domain == input::Domain::octahedral)
+        throw CLI::ValidationError("--domain", "is latlong with --scene: points of a mesh see lat-long texels");
     options.scene.check(*options.command);
     const builder::TargetOptions& target = options.sweep.target;
     if (kind != SweepKind::brdf && target.channels.mode == ACDF_CHANNELS_SEPARATE)
@@ -93,11 +96,10 @@ void check_options(SweepArguments& options, SweepKind kind) {
     options.sweep.visible.threshold /= 100.0; // it is given in per cent
 }
 
-/// What has to be said again to the subcommand that makes a file; `on_latlong_grid`: that grid, which the probe has
+/// What has to be repeated to the subcommand that makes a file; `on_latlong_grid`: that grid, which the probe has
 /// not.
-std::string command_of(const SweepArguments& options, SweepKind kind, bool on_latlong_grid) {
-    const char* subcommand = kind == SweepKind::visibility ? "local" : to_string(kind);
-    std::string text = std::string("acdf ") + subcommand + " " + shell_word(options.source);
+std::string input_text(const SweepArguments& options, bool on_latlong_grid) {
+    std::string text = shell_word(options.source);
     const auto add = [&](const char* option, const std::string& value) {
         if (options.given(option)) text += std::string(" ") + option + " " + value;
     };
@@ -118,13 +120,9 @@ std::string command_of(const SweepArguments& options, SweepKind kind, bool on_la
     return text;
 }
 
-std::string output_of(const std::string& source, SweepKind kind) {
+std::string output_of(const std::string& source) {
     std::error_code ignored;
-    const std::string stem =
-        fs::exists(source, ignored) ? fs::path(source).stem().string() : source.substr(0, source.find(':'));
-    return stem + (kind == SweepKind::local        ? ".local.acdf"
-                   : kind == SweepKind::visibility ? ".visibility.acdf"
-                                                   : ".acdf");
+    return fs::exists(source, ignored) ? fs::path(source).stem().string() : source.substr(0, source.find(':'));
 }
 
 /// The map's own texels, where a lookup blends them: what estimates find.
@@ -136,9 +134,9 @@ builder::Target own_texels(const SweepArguments& options, const ProbeTarget& swe
 }
 
 /// What files are made of, as the subcommand does that makes one; points of meshes see lat-long texels.
-ProbeTarget sweep_target(const SweepArguments& options, SweepKind kind) {
+ProbeTarget sweep_target(const SweepArguments& options) {
     input::ProbeOptions input = options.input;
-    if (kind == SweepKind::visibility) input.domain = input::Domain::latlong;
+    if (options.scene.given()) input.domain = input::Domain::latlong;
     return load_target(options.source, input, options.sweep.target, notes_of(options.source, options.quiet));
 }
 
@@ -159,28 +157,28 @@ SweptMesh swept_mesh(const SweepArguments& options) {
     return out;
 }
 
-Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress& progress) {
-    const ProbeTarget swept = sweep_target(options, kind);
+Sweep sweep_light(SweepArguments& options, const build::Progress& progress) {
+    const ProbeTarget swept = sweep_target(options);
     const input::Probe& probe = swept.probe;
     const builder::Target& target = swept.target;
-    const builder::Source source = source_of(probe, options.input);
-    if (kind != SweepKind::visibility) options.sweep.texels = own_texels(options, swept);
+    options.sweep.texels = own_texels(options, swept);
     const bool square = builder::grid_of(target).parameterization == ACDF_PARAM_OCTAHEDRAL;
-    Sweep sweep = kind == SweepKind::visibility
-                      ? sweep_visibility(target, source, swept_mesh(options), options.sweep, progress)
-                  : kind == SweepKind::local ? sweep_local(target, source, options.sweep, progress)
-                                             : sweep_environment(target, source, options.sweep, progress);
-    sweep.command = command_of(options, kind, kind == SweepKind::visibility && swept.resampled);
+    std::optional<SweptMesh> mesh;
+    if (options.scene.given()) mesh = swept_mesh(options);
+    Sweep sweep =
+        sweep_probe(target, source_of(probe, options.input), mesh ? &*mesh : nullptr, options.sweep, progress);
+    sweep.input = input_text(options, options.scene.given() && swept.resampled);
     sweep.description =
         std::to_string(probe.width) + " x " + std::to_string(probe.height) + (square ? " octahedral" : " lat-long");
     if (!swept.resampled) return sweep;
     sweep.description += ", resampled from " + std::to_string(probe.source_width) + " x " +
                          std::to_string(probe.source_height) + " " + input::to_string(probe.projection);
     char least[240];
-    std::snprintf(least, sizeof least,
-                  "the probe was resampled: a pdf that is constant on %d x %d texels has a relative variance of at "
-                  "least %.3g of the light itself; points and baselines use these texels as the light",
-                  probe.width, probe.height, compress::least_second_moment(builder::grid_of(target)) - 1.0);
+    std::snprintf(
+        least, sizeof least,
+        "the probe was resampled: no pdf that is constant on %d x %d texels has less than %.3g, of the light "
+        "itself; points and baselines take these texels for what is looked up",
+        probe.width, probe.height, compress::least_second_moment(builder::grid_of(target)) - 1.0);
     sweep.notes.push_back(least);
     return sweep;
 }
@@ -188,7 +186,7 @@ Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress
 Sweep sweep_reflection(SweepArguments& options, const build::Progress& progress) {
     const std::unique_ptr<input::Brdf> brdf = input::open_brdf(options.source);
     Sweep sweep = sweep_brdf(*brdf, options.sweep, progress);
-    sweep.command = command_of(options, SweepKind::brdf, false);
+    sweep.input = input_text(options, false);
     sweep.description = brdf->isotropic ? "isotropic BRDF" : "anisotropic BRDF";
     sweep.notes.insert(sweep.notes.end(), brdf->notes.begin(), brdf->notes.end());
     return sweep;
@@ -198,17 +196,27 @@ Sweep make_sweep(SweepArguments& options, SweepKind kind) {
     ProgressBar bar(options.quiet);
     try {
         Sweep sweep = kind == SweepKind::brdf ? sweep_reflection(options, bar.callback())
-                                              : sweep_probe(options, kind, bar.callback());
+                                              : sweep_light(options, bar.callback());
         sweep.source = options.source;
-        sweep.output = output_of(options.source, kind);
+        sweep.output = output_of(options.source);
         return sweep;
     } catch (const std::invalid_argument& error) {
         throw Failure(options.source + ": " + error.what());
     }
 }
 
+/// A line of advice, and the command, of each kind of renderer.
+std::string advice_text(const Sweep& sweep) {
+    const Advice advice = advise(sweep);
+    if (sweep.kind == SweepKind::brdf) return advice.sentence + "\n  " + advice.command + "\n";
+    std::string out;
+    for (const RendererAdvice& one : advice.renderers)
+        out += renderer_text(one.renderer) + ": " + one.sentence + "\n  " + one.command + "\n";
+    return out;
+}
+
 void run(SweepArguments& options) {
-    const SweepKind kind = options.kind ? *options.kind : kind_of(options.source);
+    const SweepKind kind = kind_of(options.source);
     check_options(options, kind);
     const auto limit = limit_threads(options.threads);
     const OutputFolder folder(options.folder);
@@ -230,38 +238,38 @@ void run(SweepArguments& options) {
     if (options.json) {
         std::fputs(text.c_str(), stdout);
     } else if (!options.quiet) {
-        const Advice advice = advise(sweep);
-        put(advice.sentence + "\n  " + advice.command + "\n" + path("report.html") +
-            " compares them; the numbers are in " + path("sweep.csv") + " and " + path("sweep.json") + "\n");
+        put(advice_text(sweep) + path("report.html") + " has plots; the figures are in " + path("sweep.csv") +
+            " and " + path("sweep.json") + "\n");
     }
 }
 
 void add_sweep_options(CLI::App& command, SweepArguments& options) {
-    constexpr Named<SweepKind> kinds[] = {{"env", SweepKind::environment},
-                                          {"local", SweepKind::local},
-                                          {"visibility", SweepKind::visibility},
-                                          {"brdf", SweepKind::brdf}};
-    add_choice(
-        command, "--kind", [&options](SweepKind kind) { options.kind = kind; }, kinds,
-        "Which files are compared: env, local (for every normal), visibility (of a scene: acdf local --visibility) "
-        "or "
-        "brdf")
-        ->option_text("NAME [by the source: env or brdf]")
+    options.scene.add(
+        command,
+        "A mesh of your scene (.obj, .ply, .instances): files are compared at points all over it, and "
+        "those of acdf local --visibility take part",
+        "Sweep");
+    comma_separated(
+        command.add_option("--files", options.sweep.files,
+                           "Kinds of files to try, separated by commas. Probes: env, env-mis (--mis mean), "
+                           "local, local-mis (--mis cosine), visibility (with --scene), local-fast, "
+                           "local-separate, local-cdf, env-cdf, env-pdf, env-uniform; BRDFs: variance, "
+                           "separate, cdf, uniform"))
+        ->option_text("NAMES [env,env-mis,local,local-mis; BRDFs: all]")
         ->group("Sweep");
-    options.scene.add(command,
-                      "For --kind visibility: the mesh (.obj, .ply, .instances) that the visibility cells are for",
-                      "Sweep");
-    comma_separated(command.add_option("--budgets", options.budgets, "Sizes to try, separated by commas"))
-        ->option_text("SIZES [4KiB,16KiB,64KiB,256KiB,1MB for env]")
+    comma_separated(command.add_option("--budgets", options.budgets, "Sizes of each kind, separated by commas"))
+        ->option_text("SIZES [16KiB,64KiB,256KiB for env; 64KiB,256KiB,1MiB for local]")
         ->group("Sweep");
-    comma_separated(command.add_option(
-                        "--fits", options.sweep.fits,
-                        "Fits to try, separated by commas. env: variance, cdf, pdf, uniform; local: variance, fast "
-                        "(--shape fast), separate (a tree for each normal), cdf (the paper's); visibility: "
-                        "visibility, variance (by "
-                        "normals "
-                        "alone); brdf: variance, separate, cdf, uniform"))
-        ->option_text("NAMES [all of the kind; local: variance,fast,cdf]")
+    const std::map<std::string, AcdfHeuristic> heuristics{{"balance", ACDF_HEURISTIC_BALANCE},
+                                                          {"power", ACDF_HEURISTIC_POWER}};
+    command
+        .add_option_function<std::string>(
+            "--heuristic",
+            [&options, heuristics](const std::string& name) { options.sweep.heuristic = heuristics.at(name); },
+            "How your renderer weighs samples of the light and of the BSDF: balance, or power (squares)")
+        ->check(CLI::IsMember({"balance", "power"}))
+        ->type_name("")
+        ->option_text("NAME [balance]")
         ->group("Sweep");
     command
         .add_option("--spp", options.sweep.visible.spp,
@@ -307,7 +315,8 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
 void add_sweep(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<SweepArguments>();
     CLI::App& command = *program.add_subcommand(
-        "sweep", "Which size and fit: noise, time and baselines on your probe or BRDF, as a table and a page");
+        "sweep",
+        "Which file to make for which renderer: noise, time and baselines on your probe or BRDF, on a page");
     options->command = &command;
     command
         .add_option(
@@ -336,15 +345,15 @@ void add_sweep(CLI::App& program, int& exit_code) {
     add_json(command, options->json);
     add_quiet(command, options->quiet);
     command.footer(help_footer(
-        "Writes report.html, one page without network or scripts: plots, pictures, what to choose and the command "
-        "that makes it, and where a baseline is better. sweep.csv and sweep.json have the same numbers. All files "
-        "that "
-        "are compared are made in memory.",
+        "Writes report.html, one page without network or scripts: which file to make for each kind of renderer, "
+        "plots, "
+        "pictures, and where a baseline is better. sweep.csv and sweep.json have the figures. All files that are "
+        "compared are made in memory.",
         "acdf sweep probe.exr -o out\n"
-        "acdf sweep probe.exr -o out --kind local --budgets 64KiB,256KiB,1MB\n"
-        "acdf sweep probe.exr -o out --kind visibility --scene room.obj --budgets 1MB,4MB\n"
+        "acdf sweep probe.exr -o out --scene room.obj\n"
+        "acdf sweep probe.exr -o out --files local,local-fast --budgets 64KiB,256KiB,1MB\n"
         "acdf sweep nickel.binary -o out --spp 16\n"
-        "acdf sweep ggx:alpha=0.1 -o out --fits variance,cdf --no-timing"));
+        "acdf sweep ggx:alpha=0.1 -o out --files variance,cdf --no-timing"));
     command.callback([options, &exit_code] {
         run(*options);
         exit_code = exit_done;

@@ -4,6 +4,7 @@
 #include "tools/cli/noise.h"
 #include "tools/cli/sizes.h"
 #include "tools/sweep/advice.h"
+#include "tools/sweep/cost.h"
 #include "tools/sweep/page_chart.h"
 #include "tools/sweep/page_style.h"
 #include "tools/sweep/text.h"
@@ -34,45 +35,23 @@ std::string prose(const std::string& text) {
     return out + (code ? "</code>" : "");
 }
 
-const char* kind_text(SweepKind kind) {
-    return kind == SweepKind::environment  ? "environment map"
-           : kind == SweepKind::local      ? "environment map for every normal"
-           : kind == SweepKind::visibility ? "environment map for the positions of a scene"
-                                           : "BRDF";
-}
-
-const char* conditions_text(SweepKind kind) {
-    return kind == SweepKind::brdf ? "views" : kind == SweepKind::visibility ? "positions" : "normals";
-}
-
 std::string fact(const std::string& name, const std::string& value, const std::string& small) {
     return "<div>" + element("dt", name) + "<dd>" + escaped(value) + "<small>" + escaped(small) +
            "</small></dd></div>\n";
 }
 
-std::string facts_html(const Sweep& sweep, const Advice& advice) {
+std::string brdf_facts(const Sweep& sweep, const Advice& advice) {
     const SweepRow &best = sweep.rows[advice.recommended.row], &base = sweep.rows[sweep.reference];
     std::string out = "<dl class=\"facts\">\n";
-    const std::string file = best.file_bytes > 0 ? "the file's " + to_readable_size(best.file_bytes) +
-                                                       " and the tables that are made when it is opened; "
-                                                 : "";
-    out += fact("Memory", to_readable_size(best.bytes),
-                file + short_number(double(base.bytes) / double(best.bytes)) + " times smaller than the " +
-                    base.label + ", which takes " + to_readable_size(base.bytes));
-    const bool pictures = sweep.kind == SweepKind::environment;
-    const std::string where = pictures ? " on a diffuse surface, nothing hidden" : "";
-    out += fact("Noise at " + std::to_string(sweep.visible.spp) + " samples per pixel",
-                noise_text(best.shaded(), sweep.visible.spp),
-                "relative variance of a sample " + short_number(best.shaded()) + where);
-    out += fact("Noise at 16, 64, 256 samples", noise_texts(best.shaded()),
-                "median over " + std::string(conditions_text(sweep.kind)) + " " +
-                    noise_texts(pictures ? best.lit[open_alone].median : best.median));
-    const double sobol = pictures ? best.lit[open_alone].sobol : best.sobol;
-    if (sobol == sobol)
-        out += fact("With a scrambled Sobol' sequence", noise_text(sobol, sweep.visible.spp),
-                    "noise at " + std::to_string(sweep.visible.spp) + " samples per pixel" + where);
-    if (std::isfinite(base.shaded() / best.shaded()))
-        out += fact("At equal samples", noise_ratio_text(base.shaded() / best.shaded()), "the " + base.label);
+    out += fact(
+        "Memory", to_readable_size(best.bytes),
+        "the file's " + to_readable_size(best.file_bytes) + " and the tables that are made when it is opened; " +
+            short_number(double(base.bytes) / double(best.bytes)) + " times smaller than the " + base.label);
+    out += fact("Noise at 16, 64, 256 samples", noise_texts(best.relative_variance),
+                "median over views " + noise_texts(best.median));
+    if (best.sobol == best.sobol)
+        out += fact("With a scrambled Sobol' sequence", noise_text(best.sobol, sweep.visible.spp),
+                    "noise at " + std::to_string(sweep.visible.spp) + " samples per pixel");
     if (const Interval time = ratio_interval(best.times.sample, base.times.sample); time.known())
         out += fact("Time a sample", short_number(time.value) + " \xC3\x97",
                     "the time of the " + base.label + "; 95 % confidence " + short_number(time.low) + " to " +
@@ -80,38 +59,114 @@ std::string facts_html(const Sweep& sweep, const Advice& advice) {
     return out + "</dl>\n";
 }
 
+std::string brdf_advice(const Sweep& sweep, const Advice& advice) {
+    return "<p class=\"lead\" id=\"recommendation\">" + escaped(advice.sentence) + "</p>\n" +
+           brdf_facts(sweep, advice) + "<p>This makes that file:</p>\n<pre><code id=\"command\">" +
+           escaped(advice.command) + "</code></pre>\n";
+}
+
+/// "yes" or "no" to whether it combines samples by MIS, and what it hands over.
+std::string renderer_cells(const RendererKind& renderer) {
+    constexpr const char* given[] = {"no", "yes", "yes, and the position"};
+    return element("td", renderer.mis ? "yes" : "no") +
+           element("td class=\"text\"", given[static_cast<std::size_t>(renderer.given)]);
+}
+
+/// Noise of a row in each case that counts, beside the reference's.
+std::string case_cells(const Sweep& sweep, const RendererAdvice& one) {
+    std::string out;
+    for (std::size_t c = 0; c < kCases; ++c) {
+        const Estimator e = one.renderer.estimator();
+        const auto noise = [&](std::size_t row) {
+            const Noise& n = sweep.rows[row].noise[e][c];
+            const double v = sweep.numbers == measure::Numbers::sobol ? n.sobol : n.exact;
+            return noise_text(v, sweep.visible.spp);
+        };
+        out += "<td>" + noise(one.row) + " <small>" + noise(sweep.reference) + "</small></td>";
+    }
+    return out;
+}
+
+/// A line a kind of renderer.
+std::string renderers_table(const Sweep& sweep, const Advice& advice) {
+    std::string out =
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Renderers\"><table id=\"renderers\">\n"
+        "<thead><tr><th>MIS?</th><th class=\"text\">normal handed to lights?</th><th class=\"text\">make</th>"
+        "<th>memory</th><th>diffuse, open</th><th>diffuse, hidden</th><th>glossy, open</th><th>glossy, hidden</th>"
+        "</tr></thead>\n<tbody>\n";
+    for (const RendererAdvice& one : advice.renderers) {
+        const SweepRow& row = sweep.rows[one.row];
+        out += "<tr data-renderer=\"" + to_string(one.renderer) + "\">" + renderer_cells(one.renderer) +
+               "<td class=\"text\"><code>" + escaped(row.label) + "</code>, " + to_readable_size(row.file_bytes) +
+               "</td>" + element("td", to_readable_size(row.bytes)) + case_cells(sweep, one) + "</tr>\n";
+    }
+    return out + "</tbody></table></div>\n<p class=\"soft\">Noise at " + std::to_string(sweep.visible.spp) +
+           " samples; in small type that of the " + escaped(sweep.rows[sweep.reference].label) +
+           " beside it.</p>\n";
+}
+
+std::string probe_advice(const Sweep& sweep, const Advice& advice) {
+    std::string out =
+        "<p class=\"lead\">Two questions decide: does your renderer combine samples of the light and of "
+        "the BSDF by MIS, and does it hand the surface normal to its lights?</p>\n" +
+        renderers_table(sweep, advice);
+    for (const RendererAdvice& one : advice.renderers)
+        out += "<h3>" + escaped(renderer_text(one.renderer)) + "</h3>\n" + element("p", one.sentence) +
+               "\n<pre><code>" + escaped(one.command) + "</code></pre>\n";
+    return out;
+}
+
 std::string advice_html(const Sweep& sweep, const Advice& advice) {
-    return "<section class=\"advice\" aria-label=\"Recommendation\">\n<p class=\"lead\" id=\"recommendation\">" +
-           escaped(advice.sentence) + "</p>\n" + facts_html(sweep, advice) +
-           "<p>This makes that file:</p>\n<pre><code id=\"command\">" + escaped(advice.command) +
-           "</code></pre>\n<p class=\"rule\">" + escaped(advice.rule) + "</p>\n</section>\n";
+    return "<section class=\"advice\" aria-label=\"Recommendation\">\n" +
+           (sweep.kind == SweepKind::probe ? probe_advice(sweep, advice) : brdf_advice(sweep, advice)) +
+           "<p class=\"rule\">" + escaped(advice.rule) + "</p>\n</section>\n";
 }
 
 Interval only(double value) { return {value, kUnknown, kUnknown}; }
 
-/// In the order of the page. Times come last, so that a page without them just ends earlier.
-std::vector<Chart> charts_of(const Sweep& sweep) {
-    const std::string base = sweep.rows[sweep.reference].label;
-    const char* what = sweep.kind == SweepKind::environment ? "of the light itself"
-                       : sweep.kind == SweepKind::local ? "of what a diffuse surface reflects, mean over normals"
-                       : sweep.kind == SweepKind::visibility
-                           ? "of what the scene reflects, with its occluders, mean over positions"
-                           : "of what is reflected to a view, mean over views";
-    const bool pictures = sweep.kind == SweepKind::environment;
-    std::vector<Chart> out;
-    if (pictures)
-        out.push_back(
-            {"surface", "Noise in pictures",
-             "Relative variance of one sample of a diffuse surface, nothing hidden, mean over normals: lower "
-             "is better.",
-             "relative variance on a surface",
-             [](const Sweep&, const SweepRow& r) { return only(r.lit[open_alone].mean); }});
-    out.push_back({"variance", pictures ? "Noise of the light itself" : "Noise",
-                   std::string("Relative variance of one sample ") + what + ": lower is better.",
+/// Variance at equal time, or at equal samples where nothing was timed.
+template <Estimator E>
+Interval compared(const Sweep& sweep, const SweepRow& row) {
+    const bool probe = sweep.kind == SweepKind::probe;
+    const double variance = probe ? case_mean(sweep, row, E) : row.relative_variance;
+    if (!sweep.timed || std::isinf(variance)) return only(variance);
+    const Interval t = cost_ratio(row, sweep.rows[sweep.reference], E, sweep.costs);
+    return {t.value * variance, t.low * variance, t.high * variance};
+}
+
+Chart equal_time_chart(const Sweep& sweep, const char* id, const char* title, const char* what,
+                       Interval (*value)(const Sweep&, const SweepRow&)) {
+    std::string about = std::string("Relative variance ") + what + ": lower is better.";
+    if (sweep.timed)
+        about += " Times the time of a sample, in units of the " + sweep.rows[sweep.reference].label + "'s, with " +
+                 short_number(sweep.costs.shadow_ray_ns) + " ns beside its sampling (--shadow-ray-ns).";
+    return {id, title, about, sweep.timed ? "variance at equal time" : "relative variance", value};
+}
+
+void add_probe_charts(const Sweep& sweep, std::vector<Chart>& out) {
+    out.push_back(equal_time_chart(sweep, "mis", "Noise with MIS",
+                                   "of one sample of the light and one of the BSDF, mean over cases",
+                                   compared<with_mis>));
+    out.push_back(equal_time_chart(sweep, "alone", "Noise with samples of the light alone",
+                                   "of one sample, mean over cases", compared<light_alone>));
+}
+
+void add_brdf_charts(const Sweep& sweep, std::vector<Chart>& out) {
+    out.push_back({"variance", "Noise", "Relative variance of one sample, mean over views: lower is better.",
                    "relative variance", [](const Sweep&, const SweepRow& r) { return only(r.relative_variance); },
-                   pictures ? kUnknown : sweep.visible.largest_variance(),
+                   sweep.visible.largest_variance(),
                    short_number(100.0 * sweep.visible.threshold) + " % noise at " +
                        std::to_string(sweep.visible.spp) + " spp"});
+    if (sweep.timed)
+        out.push_back(equal_time_chart(sweep, "equal-time", "Noise at equal time", "of one sample, mean over views",
+                                       compared<light_alone>));
+}
+
+/// In the order of the page. Times come last, so that a page without them just ends earlier.
+std::vector<Chart> charts_of(const Sweep& sweep) {
+    std::vector<Chart> out;
+    if (sweep.kind == SweepKind::probe) add_probe_charts(sweep, out);
+    else add_brdf_charts(sweep, out);
     out.push_back(
         {"weight", "Fireflies",
          "The largest weight f/p that a sample can have, over the mean: it bounds how bright a firefly can be.",
@@ -120,21 +175,17 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
     out.push_back({"sample", "Time of a sample",
                    "Median, and the interval that holds it with 95 % confidence. One thread.", "ns a sample",
                    [](const Sweep&, const SweepRow& r) { return median_interval(r.times.sample); }});
-    out.push_back({"equal-time", "Noise at equal time",
-                   "Variance times time, in units of one sample of the " + base + ". " +
-                       (sweep.kind == SweepKind::environment ? "Of irradiance on a diffuse surface. " : "") +
-                       "A sample takes " + short_number(sweep.costs.shadow_ray_ns) +
-                       " ns besides its sampling: a shadow ray, a BRDF (--shadow-ray-ns).",
-                   "variance at equal time", [](const Sweep& s, const SweepRow& r) {
-                       const Interval t = cost_ratio(r, s.rows[s.reference], open_alone, s.costs);
-                       return Interval{t.value * r.shaded(), t.low * r.shaded(), t.high * r.shaded()};
-                   }});
-    out.push_back(
-        {"pdf", "Time of a pdf",
-         "Multiple importance sampling needs the pdf of each sample; samplers without a pdf are left out.",
-         "ns a pdf", [](const Sweep&, const SweepRow& r) { return median_interval(r.times.pdf); }});
+    out.push_back({"pdf", "Time of a pdf", "MIS evaluates one for each sample.", "ns a pdf",
+                   [](const Sweep&, const SweepRow& r) { return median_interval(r.times.pdf); }});
     out.push_back({"build", "Time to build a file", "All cores, once; accuracy measured.", "seconds",
                    [](const Sweep&, const SweepRow& r) { return only(r.build_seconds); }});
+    return out;
+}
+
+std::vector<std::size_t> recommended_rows(const Sweep& sweep, const Advice& advice) {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < sweep.rows.size(); ++i)
+        if (advice.recommends(i)) out.push_back(i);
     return out;
 }
 
@@ -146,12 +197,13 @@ std::string legend_html(const Sweep& sweep) {
 }
 
 std::string charts_html(const Sweep& sweep, const Advice& advice) {
-    std::string out = "<section>\n<h2>Size, noise and time</h2>\n<p class=\"soft\">Lines are files of acdf; "
-                      "letters are the baselines, which renderers use today; the ring is the recommended file. "
-                      "Move the pointer to a mark to see its numbers.</p>\n" +
-                      legend_html(sweep) + "<div class=\"grid\">\n";
+    std::string out =
+        "<section>\n<h2>Size, noise and time</h2>\n<p class=\"soft\">Lines are files of acdf; letters "
+        "are what renderers use without it; rings mark recommended files. Point at anything for "
+        "its numbers.</p>\n" +
+        legend_html(sweep) + "<div class=\"grid\">\n";
     for (const Chart& chart : charts_of(sweep)) {
-        const std::string svg = chart_svg(sweep, chart, advice.recommended.row);
+        const std::string svg = chart_svg(sweep, chart, recommended_rows(sweep, advice));
         if (svg.empty()) continue;
         out += "<figure>" + element("h3", chart.title) + element("figcaption", chart.about) + svg + "</figure>\n";
     }
@@ -160,9 +212,10 @@ std::string charts_html(const Sweep& sweep, const Advice& advice) {
 
 std::string pictures_html(const Sweep& sweep) {
     if (sweep.pictures.empty()) return "";
-    std::string out = "<section>\n<h2>What is stored</h2>\n<p class=\"soft\">Pdf per steradian, on a logarithmic "
-                      "scale. Lines are the borders of cells that are large enough to see.</p>\n"
-                      "<div class=\"grid pictures\">\n";
+    std::string out =
+        "<section>\n<h2>What is stored</h2>\n<p class=\"soft\">The pdf per steradian, on a logarithmic "
+        "scale; lines are the borders of cells, where those are large enough to see.</p>\n"
+        "<div class=\"grid pictures\">\n";
     for (const SweepPicture& picture : sweep.pictures)
         out += "<figure>" + element("h3", picture.title) +
                html_image(picture.png, picture.width, picture.height, picture.title + ". " + picture.description) +
@@ -189,10 +242,12 @@ std::string verdict_html(Verdict verdict) {
 std::string comparisons_html(const Sweep& sweep, const Advice& advice) {
     std::string out = "<section>\n<h2>Compared with what renderers use today</h2>\n<ul class=\"say\">\n";
     for (const std::string& finding : advice.findings) out += "<li>" + prose(finding) + "</li>\n";
+    out += "</ul>\n";
+    if (advice.comparisons.empty()) return out + "</section>\n";
     out +=
-        "</ul>\n<p class=\"soft\">Each figure is that of the baseline divided by that of the recommended file: "
-        "above 1 the file is better. Ratios of times have the interval that holds the median with 95 % confidence; "
-        "variances are exact.</p>\n"
+        "<p class=\"soft\">Each baseline over the recommended file: more than 1 speaks for the file. Ratios "
+        "of "
+        "times have the interval that holds the median with 95 % confidence; variances are exact.</p>\n"
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Baselines\"><table id=\"baselines\">\n"
         "<thead><tr><th>baseline</th><th>memory</th><th>variance</th>";
     if (sweep.timed) out += "<th>time a sample</th><th>variance at equal time</th><th class=\"text\">better</th>";
@@ -217,8 +272,10 @@ std::string cell_html(const SweepColumn& column, const Sweep& sweep, const Sweep
     if (name == "options") return "<td class=\"text\"" + exact + "><code>" + escaped(row.options) + "</code></td>";
     if (name == "bytes" || (name == "file_bytes" && row.ours()))
         return "<td" + exact + ">" + escaped(to_readable_size(std::get<std::uint64_t>(value))) + "</td>";
-    if (name == "noise")
-        return "<td" + exact + ">" + (std::isfinite(row.shaded()) ? noise_texts(row.shaded()) : "") + "</td>";
+    if (name == "alone" || name == "mis") {
+        const double variance = std::get<double>(value);
+        return "<td" + exact + ">" + (std::isinf(variance) ? "biased" : noise_texts(variance)) + "</td>";
+    }
     if (const auto* count = std::get_if<std::uint64_t>(&value))
         return "<td" + exact + ">" + std::to_string(*count) + "</td>";
     const double number = std::get<double>(value);
@@ -244,14 +301,13 @@ std::string rows_html(const Sweep& sweep, const Advice& advice) {
         "rows\"><table id=\"rows\">\n<thead><tr>";
     for (const SweepColumn& column : columns) {
         const std::string name = column.name;
-        const bool noise = name == "noise";
+        const bool noise = name == "alone" || name == "mis";
         out += std::string("<th") + (name == "options" ? " class=\"text\"" : "") + ">" +
-               escaped(noise ? "noise at 16, 64, 256" : column.heading) + "</th>";
+               escaped(std::string(noise ? "noise at 16, 64, 256, " : "") + column.heading) + "</th>";
     }
     out += "</tr></thead>\n<tbody>\n";
     for (std::size_t i = 0; i < sweep.rows.size(); ++i) {
-        out += "<tr data-row=\"" + std::to_string(i) + "\"" +
-               (i == advice.recommended.row ? " class=\"best\"" : "") + ">";
+        out += "<tr data-row=\"" + std::to_string(i) + "\"" + (advice.recommends(i) ? " class=\"best\"" : "") + ">";
         for (const SweepColumn& column : columns) out += cell_html(column, sweep, sweep.rows[i]);
         out += "</tr>\n";
     }
@@ -261,36 +317,40 @@ std::string rows_html(const Sweep& sweep, const Advice& advice) {
 std::string method_html(const Sweep& sweep) {
     std::vector<std::string> lines;
     const std::string conditions = std::to_string(sweep.conditions);
-    lines.push_back("The relative variance is the variance of one sample of the estimator over its squared mean; "
-                    "the mean of n samples has an n-th of it. It is an exact sum over the source, not an estimate: "
-                    "it has no noise of its own.");
-    if (sweep.kind == SweepKind::environment)
+    lines.push_back(
+        "Relative variance is that of one sample of the estimator over its squared mean; n samples have it "
+        "over n. It is summed over the whole source, not estimated: it has no noise of its own.");
+    if (sweep.kind == SweepKind::probe)
         lines.push_back(
-            "On a diffuse surface: the same of the irradiance, light times cosine above the horizon, mean over " +
+            "The estimate is that of a path tracer's vertex: samples of the light alone, or one of the light and "
+            "one of "
+            "the BSDF with the " +
+            std::string(sweep.heuristic == ACDF_HEURISTIC_POWER ? "power" : "balance") +
+            " heuristic. The surface is white and diffuse, or a white GGX lobe of alpha 0.2 seen at 45 degrees. "
+            "Means are over " +
             conditions +
-            " random normals. With an MIS partner: half of the samples are cosine distributed, all weighted by the "
-            "balance heuristic. Behind occluders: points of the demo scene, a sphere on a plane beside a wall; "
-            "there "
-            "variances "
-            "are divided by E^2 + (0.1 mean E)^2, E of the point, so that a few nearly black ones do not decide. "
-            "Columns named sobol (in sweep.csv) are the variance of an estimate with scrambled Sobol' points times "
-            "its number of samples, measured with " +
-            std::to_string(sweep.visible.spp) + " samples.");
+            (sweep.on_mesh ? " points of the mesh."
+                           : " random normals; the wall that hides half of a sky "
+                             "stands in a random direction.") +
+            " Noise is that of a picture: the mean of variances over points, over the square of what they reflect "
+            "on average. "
+            "Columns named sobol are variance times samples with scrambled Sobol' points, at " +
+            std::to_string(sweep.visible.spp) + " samples, by sampling them.");
     else
         lines.push_back(
-            std::string("Means are over ") + conditions + " random " + conditions_text(sweep.kind) +
-            ", chosen independently of the normals or views that files store. With Sobol' points: the variance of "
-            "an estimate with a scrambled Sobol' sequence times its number of samples, measured with " +
-            std::to_string(sweep.visible.spp) + " samples.");
+            "Means are over " + conditions +
+            " random views, none chosen for what a file stores. With Sobol' points: variance times samples "
+            "with a scrambled Sobol' sequence, at " +
+            std::to_string(sweep.visible.spp) + " samples, by sampling them.");
     if (sweep.timed)
-        lines.push_back("Times: one thread, all samplers in turn within each of many rounds, so that a slower "
-                        "moment of the machine affects all of them. Each shading point takes sixteen samples (or "
-                        "pdfs), and the work that a sampler does once a point is included; caches are as warm as "
-                        "that leaves them. Intervals hold the median "
-                        "with 95 % confidence (order statistics); ratios are taken within rounds. Times are those "
-                        "of this machine; --no-timing leaves them out.");
-    lines.push_back(
-        "A sampler is biased if its pdf is 0 in a direction with light: more samples do not remove that error.");
+        lines.push_back(
+            "Times: one thread, all samplers in turn within each of many rounds, so that what slows the "
+            "machine slows all; sixteen samples (or pdfs) at each shading point, what a sampler does "
+            "once a point included; tables are as warm as that leaves them. Intervals hold the median "
+            "with 95 % confidence (order statistics); ratios are taken within rounds. They are of this "
+            "machine; --no-timing leaves them out.");
+    lines.push_back("A sampler is called biased where there is light but no pdf: no number of samples mends "
+                    "that.");
     for (const std::string& note : sweep.notes) lines.push_back(note);
     std::string out = "<section>\n<h2>How this was measured</h2>\n<ul class=\"say soft\">\n";
     for (const std::string& text : lines) out += element("li", text) + "\n";
@@ -307,8 +367,9 @@ std::string sweep_html(const Sweep& sweep) {
                       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +
                       element("title", "acdf sweep: " + name) + "\n<style>" + report_style +
                       "</style>\n</head>\n<body>\n<header>\n<p class=\"kicker\">acdf sweep, " +
-                      kind_text(sweep.kind) + "</p>\n<h1><bdi>" + escaped(name) + "</bdi></h1>\n" +
-                      element("p class=\"soft\"", sweep.description) + "\n</header>\n<main>\n";
+                      (sweep.kind == SweepKind::probe ? "environment map" : "BRDF") + "</p>\n<h1><bdi>" +
+                      escaped(name) + "</bdi></h1>\n" + element("p class=\"soft\"", sweep.description) +
+                      "\n</header>\n<main>\n";
     out += advice_html(sweep, advice) + charts_html(sweep, advice) + pictures_html(sweep) +
            comparisons_html(sweep, advice) + rows_html(sweep, advice) + method_html(sweep);
     return out + "</main>\n<footer>Made by acdf. This page is one file: it loads nothing and runs no "

@@ -157,7 +157,7 @@ std::string axes_svg(const Chart& chart, const Layout& at) {
     return out;
 }
 
-/// A shape of about radius r around (x, y), by the number of a fit.
+/// A shape of about radius r around (x, y), by the number of a kind of file.
 std::string shape(std::size_t index, double x, double y, double r) {
     const auto polygon = [&](std::initializer_list<std::pair<double, double>> corners) {
         std::string points;
@@ -191,7 +191,7 @@ std::string point_group(const Sweep& sweep, const Chart& chart, const ReportSeri
     const SweepRow& row = sweep.rows[p.row];
     return "<g class=\"point " + std::string(series.ours ? "f" : "r") + std::to_string(series.index % 5) +
            "\" data-chart=\"" + chart.id + "\" data-row=\"" + std::to_string(p.row) + "\" data-system=\"" +
-           escaped(row.system) + "\" data-fit=\"" + escaped(row.fit) + "\" data-bytes=\"" +
+           escaped(row.system) + "\" data-file=\"" + escaped(row.file) + "\" data-bytes=\"" +
            std::to_string(row.bytes) + "\" data-variance=\"" + exact_text(row.relative_variance) +
            "\" data-value=\"" + exact_text(p.value.value) + "\"><title>" + escaped(tooltip(row, chart, p.value)) +
            "</title>" + inside + "</g>\n";
@@ -246,7 +246,7 @@ std::vector<ReportSeries> series_of(const Sweep& sweep) {
         const SweepRow& row = sweep.rows[i];
         const auto same = [&](const ReportSeries& s) {
             const SweepRow& first = sweep.rows[s.rows.front()];
-            return first.system == row.system && first.fit == row.fit;
+            return first.system == row.system && first.file == row.file;
         };
         const auto found = std::find_if(out.begin(), out.end(), same);
         if (found == out.end()) {
@@ -281,7 +281,7 @@ std::string series_mark(const ReportSeries& series) {
     return out + "</svg>";
 }
 
-std::string chart_svg(const Sweep& sweep, const Chart& chart, std::size_t recommended) {
+std::string chart_svg(const Sweep& sweep, const Chart& chart, const std::vector<std::size_t>& recommended) {
     const std::vector<ReportSeries> all = series_of(sweep);
     std::vector<std::vector<Placed>> placed(all.size());
     std::vector<Placed> points;
@@ -312,7 +312,7 @@ std::string chart_svg(const Sweep& sweep, const Chart& chart, std::size_t recomm
             for (const Placed& p : placed[s]) {
                 const auto [x, y] = place(p);
                 std::string inside = error_bar(at, x, p.value);
-                if (p.row == recommended)
+                if (std::find(recommended.begin(), recommended.end(), p.row) != recommended.end())
                     inside +=
                         "<circle class=\"chosen\" cx=\"" + number(x) + "\" cy=\"" + number(y) + "\" r=\"12\"/>";
                 inside += all[s].ours ? shape(all[s].index, x, y, 6.0) : shape(0, x, y, 5.0);

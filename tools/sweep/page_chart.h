@@ -30,10 +30,10 @@ struct Chart {
     std::string limit_label = {};
 };
 
-/// A row is a point wherever its value is known; each carries data-row, data-system, data-fit, data-bytes,
+/// A row is a point wherever its value is known; each carries data-row, data-system, data-file, data-bytes,
 /// data-variance and data-value with the numbers of sweep.csv. Values of 0 and infinity, and sizes below a KiB, lie
 /// on strips of their own at the edge. Empty where there is no point.
-std::string chart_svg(const Sweep& sweep, const Chart& chart, std::size_t recommended);
+std::string chart_svg(const Sweep& sweep, const Chart& chart, const std::vector<std::size_t>& recommended);
 
 /// What a series looks like in a plot, for the legend.
 std::string series_mark(const ReportSeries& series);

@@ -73,6 +73,7 @@ th,td{padding:6px 12px;text-align:right;border-bottom:1px solid var(--grid);whit
 th{font-weight:600;vertical-align:bottom;border-bottom-color:var(--rule)}
 th:first-child,td:first-child{text-align:left}
 td.text,th.text{text-align:left}
+#renderers th{white-space:normal}
 td.left{white-space:normal;min-width:190px}
 tr.best td{background:var(--keybg);font-weight:600}
 tr:last-child td{border-bottom:0}

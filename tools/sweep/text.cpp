@@ -3,10 +3,13 @@
 #include "tools/cli/json.h"
 #include "tools/cli/noise.h"
 #include "tools/sweep/advice.h"
+#include "tools/sweep/cost.h"
+#include "tools/sweep/renderers.h"
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 namespace acdf::tools {
 namespace {
@@ -26,39 +29,64 @@ Interval sample_ratio(const Sweep& sweep, const SweepRow& row) {
 using S = const Sweep&;
 using R = const SweepRow&;
 
+template <Estimator E, Case C>
+SweepValue exact_of(S, R r) {
+    return r.noise[E][C].exact;
+}
+template <Estimator E, Case C>
+SweepValue sobol_of(S, R r) {
+    return r.noise[E][C].sobol;
+}
+template <Estimator E>
+SweepValue mean_of(S s, R r) {
+    return s.kind == SweepKind::probe ? case_mean(s, r, E) : kUnknown;
+}
+
+template <Estimator E>
+double time_ratio(S s, R r) {
+    return cost_ratio(r, s.rows[s.reference], E, s.costs).value;
+}
+template <Estimator E>
+SweepValue equal_time_of(S s, R r) {
+    return s.kind == SweepKind::probe ? case_mean(s, r, E) * time_ratio<E>(s, r) : kUnknown;
+}
+
 constexpr SweepColumn columns[] = {
     {"system", nullptr, false, [](S, R r) -> SweepValue { return r.system; }},
-    {"fit", nullptr, false, [](S, R r) -> SweepValue { return r.fit; }},
+    {"file", nullptr, false, [](S, R r) -> SweepValue { return r.file; }},
     {"label", "what", false, [](S, R r) -> SweepValue { return r.label; }},
     {"options", "options", false, [](S, R r) -> SweepValue { return r.options; }},
     {"bytes", "memory", false, [](S, R r) -> SweepValue { return r.bytes; }},
     {"file_bytes", "file", false,
      [](S, R r) -> SweepValue { return r.ours() ? SweepValue(r.file_bytes) : SweepValue(kUnknown); }},
-    {"cells", "cells", false,
+    {"cells", nullptr, false,
      [](S, R r) -> SweepValue { return r.cells > 0 ? SweepValue(r.cells) : SweepValue(kUnknown); }},
+    {"alone", "light samples alone", false, mean_of<light_alone>},
+    {"mis", "with MIS", false, mean_of<with_mis>},
+    {"alone_diffuse_open", nullptr, false, exact_of<light_alone, diffuse_open>},
+    {"alone_diffuse_hidden", nullptr, false, exact_of<light_alone, diffuse_hidden>},
+    {"alone_glossy_open", nullptr, false, exact_of<light_alone, glossy_open>},
+    {"alone_glossy_hidden", nullptr, false, exact_of<light_alone, glossy_hidden>},
+    {"mis_diffuse_open", nullptr, false, exact_of<with_mis, diffuse_open>},
+    {"mis_diffuse_hidden", nullptr, false, exact_of<with_mis, diffuse_hidden>},
+    {"mis_glossy_open", nullptr, false, exact_of<with_mis, glossy_open>},
+    {"mis_glossy_hidden", nullptr, false, exact_of<with_mis, glossy_hidden>},
+    {"sobol_alone_diffuse_open", nullptr, false, sobol_of<light_alone, diffuse_open>},
+    {"sobol_alone_diffuse_hidden", nullptr, false, sobol_of<light_alone, diffuse_hidden>},
+    {"sobol_alone_glossy_open", nullptr, false, sobol_of<light_alone, glossy_open>},
+    {"sobol_alone_glossy_hidden", nullptr, false, sobol_of<light_alone, glossy_hidden>},
+    {"sobol_mis_diffuse_open", nullptr, false, sobol_of<with_mis, diffuse_open>},
+    {"sobol_mis_diffuse_hidden", nullptr, false, sobol_of<with_mis, diffuse_hidden>},
+    {"sobol_mis_glossy_open", nullptr, false, sobol_of<with_mis, glossy_open>},
+    {"sobol_mis_glossy_hidden", nullptr, false, sobol_of<with_mis, glossy_hidden>},
     {"relative_variance", "relative variance", false, [](S, R r) -> SweepValue { return r.relative_variance; }},
-    {"noise", "noise", false, [](S s, R r) -> SweepValue { return std::sqrt(r.shaded() / s.visible.spp); }},
-    {"noise_16", nullptr, false, [](S, R r) -> SweepValue { return noise_of(r.shaded(), 16); }},
-    {"noise_64", nullptr, false, [](S, R r) -> SweepValue { return noise_of(r.shaded(), 64); }},
-    {"noise_256", nullptr, false, [](S, R r) -> SweepValue { return noise_of(r.shaded(), 256); }},
+    {"noise", nullptr, false,
+     [](S s, R r) -> SweepValue {
+         return s.kind == SweepKind::brdf ? std::sqrt(r.relative_variance / s.visible.spp) : kUnknown;
+     }},
     {"worst", "worst", false, [](S, R r) -> SweepValue { return r.worst; }},
     {"median", "median", false, [](S, R r) -> SweepValue { return r.median; }},
     {"sobol", "with Sobol' points", false, [](S, R r) -> SweepValue { return r.sobol; }},
-    {"irradiance_variance", "on a diffuse surface", false,
-     [](S, R r) -> SweepValue { return r.lit[open_alone].mean; }},
-    {"irradiance_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_alone].median; }},
-    {"irradiance_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_alone].sobol; }},
-    {"partner_variance", "the same with an MIS partner", false,
-     [](S, R r) -> SweepValue { return r.lit[open_partner].mean; }},
-    {"partner_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_partner].median; }},
-    {"partner_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_partner].sobol; }},
-    {"hidden_variance", "behind occluders", false, [](S, R r) -> SweepValue { return r.lit[hidden_alone].mean; }},
-    {"hidden_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_alone].median; }},
-    {"hidden_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_alone].sobol; }},
-    {"hidden_partner_variance", "behind occluders, with an MIS partner", false,
-     [](S, R r) -> SweepValue { return r.lit[hidden_partner].mean; }},
-    {"hidden_partner_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_partner].median; }},
-    {"hidden_partner_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_partner].sobol; }},
     {"max_weight", "largest weight", false, [](S, R r) -> SweepValue { return r.max_weight; }},
     {"rms_pdf_error", "RMS error of pdf", false, [](S, R r) -> SweepValue { return r.rms; }},
     {"build_seconds", "build, s", true, [](S, R r) -> SweepValue { return r.build_seconds; }},
@@ -73,9 +101,11 @@ constexpr SweepColumn columns[] = {
     {"time_ratio", "time ratio", true, [](S s, R r) -> SweepValue { return sample_ratio(s, r).value; }},
     {"time_ratio_low", nullptr, true, [](S s, R r) -> SweepValue { return sample_ratio(s, r).low; }},
     {"time_ratio_high", nullptr, true, [](S s, R r) -> SweepValue { return sample_ratio(s, r).high; }},
-    {"equal_time_variance", "variance at equal time", true,
+    {"equal_time_alone", nullptr, true, equal_time_of<light_alone>},
+    {"equal_time_mis", nullptr, true, equal_time_of<with_mis>},
+    {"equal_time_variance", nullptr, true,
      [](S s, R r) -> SweepValue {
-         return r.shaded() * cost_ratio(r, s.rows[s.reference], open_alone, s.costs).value;
+         return s.kind == SweepKind::brdf ? r.relative_variance * time_ratio<light_alone>(s, r) : kUnknown;
      }},
 };
 
@@ -109,15 +139,21 @@ nlohmann::ordered_json comparison_json(const BaselineComparison& c, bool timed) 
     return out;
 }
 
-nlohmann::ordered_json situation_json(const SituationAdvice& s) {
-    return {{"situation", to_string(s.situation)},
-            {"relative_variance", json_value(s.lit.mean)},
-            {"median", json_value(s.lit.median)},
-            {"sobol", json_value(s.lit.sobol)},
-            {"noise_percent", noise_json(s.lit.mean)},
-            {"reference_variance_ratio", interval_json(s.over_reference)},
-            {"best_baseline", s.has_baseline ? nlohmann::ordered_json(s.best_baseline) : nlohmann::ordered_json()},
-            {"best_baseline_variance_ratio", interval_json(s.over_best_baseline)}};
+nlohmann::ordered_json rival_json(const std::optional<Rival>& rival) {
+    if (!rival) return nullptr;
+    return {{"row", rival->row}, {"variance_ratio", interval_json(rival->variance)}};
+}
+
+nlohmann::ordered_json renderer_json(const RendererAdvice& advice) {
+    return {{"renderer", to_string(advice.renderer)},
+            {"row", advice.row},
+            {"relative_variance", json_value(advice.variance)},
+            {"noise_percent", noise_json(advice.variance)},
+            {"reference_variance_ratio", interval_json(advice.over_reference)},
+            {"other_kind", rival_json(advice.other)},
+            {"baseline", rival_json(advice.baseline)},
+            {"sentence", advice.sentence},
+            {"command", advice.command}};
 }
 
 } // namespace
@@ -154,36 +190,39 @@ std::string sweep_csv(const Sweep& sweep) {
 
 std::string sweep_json(const Sweep& sweep) {
     const Advice advice = advise(sweep);
-    nlohmann::ordered_json out = {
-        {"kind", to_string(sweep.kind)},
-        {"source", sweep.source},
-        {"description", sweep.description},
-        {"conditions", sweep.conditions},
-        {"timed", sweep.timed},
-        {"reference", sweep.reference},
-        {"recommendation",
-         {{"row", advice.recommended.row},
-          {"reached", advice.recommended.reached},
-          {"spp", sweep.visible.spp},
-          {"threshold", sweep.visible.threshold},
-          {"sentence", advice.sentence},
-          {"sequence", sweep.numbers == measure::Numbers::sobol ? "sobol" : "independent"},
-          {"shadow_ray_ns", sweep.costs.shadow_ray_ns},
-          {"rule", advice.rule},
-          {"command", advice.command}}},
-        {"findings", advice.findings},
-        {"notes", sweep.notes},
-        {"pictures", nlohmann::ordered_json::array()},
-        {"comparisons", nlohmann::ordered_json::array()},
-        {"rows", nlohmann::ordered_json::array()}};
-    for (const SituationAdvice& one : advice.situations) out["pictures"].push_back(situation_json(one));
+    nlohmann::ordered_json out = {{"kind", to_string(sweep.kind)},
+                                  {"source", sweep.source},
+                                  {"description", sweep.description},
+                                  {"conditions", sweep.conditions},
+                                  {"timed", sweep.timed},
+                                  {"reference", sweep.reference},
+                                  {"spp", sweep.visible.spp},
+                                  {"threshold", sweep.visible.threshold},
+                                  {"sequence", sweep.numbers == measure::Numbers::sobol ? "sobol" : "independent"},
+                                  {"heuristic", sweep.heuristic == ACDF_HEURISTIC_POWER ? "power" : "balance"},
+                                  {"on_mesh", sweep.on_mesh},
+                                  {"shadow_ray_ns", sweep.costs.shadow_ray_ns},
+                                  {"rule", advice.rule},
+                                  {"renderers", nlohmann::ordered_json::array()},
+                                  {"recommendation", nullptr},
+                                  {"findings", advice.findings},
+                                  {"notes", sweep.notes},
+                                  {"comparisons", nlohmann::ordered_json::array()},
+                                  {"rows", nlohmann::ordered_json::array()}};
+    for (const RendererAdvice& one : advice.renderers) out["renderers"].push_back(renderer_json(one));
+    if (sweep.kind == SweepKind::brdf)
+        out["recommendation"] = {{"row", advice.recommended.row},
+                                 {"reached", advice.recommended.reached},
+                                 {"sentence", advice.sentence},
+                                 {"command", advice.command}};
     for (const BaselineComparison& c : advice.comparisons)
         out["comparisons"].push_back(comparison_json(c, sweep.timed));
     for (const SweepRow& row : sweep.rows) {
         nlohmann::ordered_json each;
         for (const SweepColumn& column : columns_of(sweep))
             each[column.name] = json_value(column.value(sweep, row));
-        each["biased"] = std::isinf(row.relative_variance);
+        each["needs_mis"] = row.needs_mis;
+        each["biased"] = std::isinf(row.relative_variance) && !row.needs_mis;
         out["rows"].push_back(std::move(each));
     }
     return json_text(out);

@@ -97,11 +97,12 @@ Interval ratio_interval(const std::vector<double>& a, const std::vector<double>&
     return median_interval(std::move(ratios));
 }
 
-std::vector<SweepTimes> time_samplers(const std::vector<Timed>& samplers, const std::vector<ShadingPoint>& points,
-                                      std::uint32_t rounds, const build::Progress& progress) {
+std::vector<SweepTimes> time_samplers(const std::vector<const measure::LightSampler*>& samplers,
+                                      const std::vector<ShadingPoint>& points, std::uint32_t rounds,
+                                      const build::Progress& progress) {
     const Inputs in = make_inputs(points);
     std::vector<std::unique_ptr<PointSampler>> each;
-    for (const Timed& timed : samplers) each.push_back(timed.sampler->point_sampler());
+    for (const measure::LightSampler* sampler : samplers) each.push_back(sampler->point_sampler());
     std::vector<SweepTimes> out(samplers.size());
     for (std::uint32_t round = 0; round <= rounds; ++round) {
         const std::size_t begin = round * kBlock % in.points.size();
@@ -112,7 +113,6 @@ std::vector<SweepTimes> time_samplers(const std::vector<Timed>& samplers, const 
                 return sampler.sample(in.u[2 * at], in.u[2 * at + 1]).pdf;
             });
             if (round > 0) out[s].sample.push_back(sample);
-            if (!samplers[s].has_pdf) continue;
             const double pdf = nanoseconds_each(in, begin, sampler,
                                                 [&](std::size_t at) { return sampler.pdf(in.wi.data() + 3 * at); });
             if (round > 0) out[s].pdf.push_back(pdf);

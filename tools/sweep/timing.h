@@ -23,11 +23,6 @@ Interval median_interval(std::vector<double> values);
 /// Of a[i] / b[i]; of as many as both have.
 Interval ratio_interval(const std::vector<double>& a, const std::vector<double>& b);
 
-struct Timed {
-    const measure::LightSampler* sampler = nullptr;
-    bool has_pdf = true;
-};
-
 /// What is timed: at each point `kSamplesAPoint` samples, and as many pdfs of directions around the normal;
 /// moving to the point is shared by them.
 constexpr std::uint32_t kSamplesAPoint = 16;
@@ -35,7 +30,7 @@ constexpr std::uint32_t kSamplesAPoint = 16;
 /// One thread. In each round every sampler runs once, in an order that changes from round to round: whatever slows
 /// the machine for a while slows all of them. A round before the first is thrown away, and so are as many samples
 /// before each that are timed.
-std::vector<SweepTimes> time_samplers(const std::vector<Timed>& samplers,
+std::vector<SweepTimes> time_samplers(const std::vector<const measure::LightSampler*>& samplers,
                                       const std::vector<measure::ShadingPoint>& points, std::uint32_t rounds,
                                       const build::Progress& progress = {});
 

@@ -35,10 +35,10 @@ struct RenderCommand : testing::Test {
 };
 
 TEST_F(RenderCommand, WritesWhatItSays) {
-    const Result result = render_once("out");
+    const Result result = render_once("out", {"--images"});
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(files("out"),
-              (std::set<std::string>{"render.json", "reference.exr", "reference.png", "full-cdf.exr",
+              (std::set<std::string>{"index.html", "render.json", "reference.exr", "reference.png", "full-cdf.exr",
                                      "full-cdf.png", "full-cdf-variance.png", "full-cdf-above.png", "cosine.exr",
                                      "cosine.png", "cosine-variance.png", "cosine-above.png", "cosine-gain.png",
                                      "mis-full-cdf-cosine.exr", "mis-full-cdf-cosine.png",
@@ -53,6 +53,33 @@ TEST_F(RenderCommand, WritesWhatItSays) {
     EXPECT_TRUE(image.floating && image.sample_bytes == 4);
     EXPECT_EQ(load_image(folder / "out/cosine.png").width, 8);
     EXPECT_GT(load_image(folder / "out/cosine-variance.png").width, 384);
+}
+
+// Pictures beside each other with zoom and difference, the table and the advice, in one file.
+TEST_F(RenderCommand, ThePageHoldsAll) {
+    ASSERT_EQ(render_once("out").code, 0);
+    EXPECT_EQ(files("out"), (std::set<std::string>{"index.html", "render.json"}));
+    const std::string page = read_text(folder / "out/index.html");
+    const Json json = Json::parse(read_text(folder / "out/render.json"));
+    std::size_t frames = 0;
+    for (std::size_t at = 0; (at = page.find("<div class=\"frame\">", at)) != std::string::npos; ++at) ++frames;
+    EXPECT_EQ(frames, 1 + json["samplers"].size()); // and the reference
+    for (const Json& one : json["samplers"])
+        EXPECT_NE(page.find("<td>" + one["sampler"].get<std::string>() + "</td>"), std::string::npos);
+    for (const char* part : {"id=\"difference\"", "id=\"part8\"", "--reference:url(data:image/png",
+                             "relative variance", "nothing hidden", "gain, equal time"})
+        EXPECT_NE(page.find(part), std::string::npos) << part;
+    ASSERT_EQ(
+        render_once("files", {"--sampler", "full-cdf", "--sampler", "mis(local:32KiB --mis cosine,cosine)"}).code,
+        0);
+    EXPECT_NE(read_text(folder / "files/index.html").find("acdf local PROBE --budget 32KiB --mis cosine<"),
+              std::string::npos); // what makes the file
+    std::string advice = json["verdict"][0];
+    for (std::size_t at = 0; (at = advice.find('\'', at)) != std::string::npos; at += 5)
+        advice.replace(at, 1, "&#39;");
+    EXPECT_NE(page.find(advice), std::string::npos) << advice;
+    for (const char* what : {"http:", "https:", "<script", "<link", "@import"})
+        EXPECT_EQ(page.find(what), std::string::npos) << what;
 }
 
 TEST_F(RenderCommand, JsonHasTheFigures) {
@@ -106,8 +133,8 @@ TEST_F(RenderCommand, SequencesAreChosen) {
 }
 
 TEST_F(RenderCommand, WritesTheSameBytesForAnyNumberOfThreads) {
-    ASSERT_EQ(render("one", {"--no-timing", "--threads", "1"}).code, 0);
-    ASSERT_EQ(render("two", {"--no-timing", "--threads", "2"}).code, 0);
+    ASSERT_EQ(render("one", {"--no-timing", "--images", "--threads", "1"}).code, 0);
+    ASSERT_EQ(render("two", {"--no-timing", "--images", "--threads", "2"}).code, 0);
     for (const std::string& name : files("one"))
         EXPECT_EQ(read_text(folder / ("one/" + name)), read_text(folder / ("two/" + name))) << name;
 }
@@ -127,16 +154,16 @@ TEST_F(RenderCommand, RefusesOutputsBeforeAnyLongWork) {
         EXPECT_EQ(lines_in(result.err), 1u) << result.err;
         EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
     };
-    for (const char* name : {"reference.exr", "reference.png", "full-cdf.png", "cosine-gain.png"}) {
+    for (const char* name : {"index.html", "reference.exr", "reference.png", "full-cdf.png", "cosine-gain.png"}) {
         std::filesystem::create_directory(folder / "out");
         write_text(folder / ("out/" + std::string(name)), "mine");
-        refused(render("out", {"--samples", "65536", "--size", "4096x4096"}),
+        refused(render("out", {"--images", "--samples", "65536", "--size", "4096x4096"}),
                 std::string(name) + ": exists already");
         EXPECT_EQ(files("out"), std::set<std::string>{name});
         std::filesystem::remove_all(folder / "out");
     }
     std::filesystem::create_directories(folder / "out/cosine.png");
-    refused(render("out", {"--force"}), "cosine.png: is a folder");
+    refused(render("out", {"--images", "--force"}), "cosine.png: is a folder");
     EXPECT_EQ(files("out"), std::set<std::string>{"cosine.png"});
     // Inputs are not overwritten, either.
     std::filesystem::copy(folder / "scene.json", folder / "render.json");
@@ -145,7 +172,7 @@ TEST_F(RenderCommand, RefusesOutputsBeforeAnyLongWork) {
             "render.json: input and output are the same file");
     EXPECT_EQ(read_text(folder / "render.json"), read_text(folder / "scene.json"));
     std::filesystem::copy(folder / "probe.pfm", folder / "reference.exr");
-    refused(render("", {"--force", "--sampler", "mis(file:reference.exr,cosine)"}),
+    refused(render("", {"--images", "--force", "--sampler", "mis(file:reference.exr,cosine)"}),
             "reference.exr: input and output are the same file");
 }
 
@@ -194,7 +221,7 @@ TEST_F(RenderCommand, LightIsInterpolatedUnlessTheSceneSaysOtherwise) {
         const std::string was = ", \"filter\": \"nearest\"";
         scene.replace(scene.find(was), was.size(), filter);
         write_text(folder / "scene.json", scene);
-        const Result result = render_once(output, {"--no-timing", "--json"});
+        const Result result = render_once(output, {"--no-timing", "--images", "--json"});
         EXPECT_EQ(result.code, 0) << result.err;
         for (const Json& one : Json::parse(result.out)["samplers"])
             EXPECT_LT(std::abs(one["bias_standard_errors"].get<double>()), 4.5) << filter << one;
@@ -203,6 +230,23 @@ TEST_F(RenderCommand, LightIsInterpolatedUnlessTheSceneSaysOtherwise) {
     const std::string by_default = brightness("", "a");
     EXPECT_EQ(brightness(", \"filter\": \"bilinear\"", "b"), by_default);
     EXPECT_NE(brightness(", \"filter\": \"nearest\"", "c"), by_default);
+}
+
+TEST_F(RenderCommand, ScenesHaveSeedsAndReferences) {
+    std::string scene = small_scene("\"full-cdf\", \"cosine\"");
+    scene.insert(scene.rfind('}'), ", \"seeds\": 5, \"reference\": false");
+    write_text(folder / "scene.json", scene);
+    const auto json = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"render",      "--scene", folder / "scene.json", "--data",
+                                       folder / "",   "-o",      folder / "out",        "--force",
+                                       "--no-timing", "--json"};
+        words.insert(words.end(), more.begin(), more.end());
+        return Json::parse(run_acdf(words).out);
+    };
+    const Json own = json({});
+    EXPECT_EQ(own["seeds"], 5);
+    EXPECT_EQ(own["reference"], "mean of all samplers");
+    EXPECT_EQ(json({"--seeds", "4"})["seeds"], 4);
 }
 
 TEST_F(RenderCommand, TakesFiles) {

@@ -114,6 +114,8 @@ TEST(RenderSceneFile, MistakesAreNamedWithTheirKey) {
          "portals[0]: has no area"},
         {"/portals/0", Json::parse(R"({"corner": [0, 0, 0], "across": [1, 0, 0]})"), "portals[0]: lacks 'up'"},
         {"/samples", -1, "samples: is -1"},
+        {"/seeds", 2, "seeds: is below 3"},
+        {"/reference", 0, "reference: is number, not true or false"},
         {"/samplers", Json::array(), "samplers: is empty"},
         {"/samplers/0", false, "samplers[0]: is boolean, not a string"},
         {"/colour", "red", "the scene: has an unknown key 'colour'"},

@@ -33,8 +33,8 @@ addEventListener("load", () => {
         return fields;
     });
     const head = lines.shift(), rows = lines.map(l => Object.fromEntries(head.map((name, i) => [name, l[i]])));
-    const charts = {surface: "irradiance_variance", variance: "relative_variance", weight: "max_weight", sample: "ns_per_sample", pdf: "ns_per_pdf",
-                    "equal-time": "equal_time_variance", build: "build_seconds"};
+    const charts = {alone: "equal_time_alone", mis: "equal_time_mis", weight: "max_weight", sample: "ns_per_sample", pdf: "ns_per_pdf",
+                    build: "build_seconds"};
     let count = 0;
     for (const [chart, column] of Object.entries(charts)) {
         const svg = document.getElementById("chart-" + chart);
@@ -57,7 +57,7 @@ addEventListener("load", () => {
         });
         // Higher values lie higher, and larger files further right: marks are where the numbers say.
         const place = p => p.querySelector("circle:not(.chosen), polygon").getBoundingClientRect();
-        const file = points.filter(p => p.dataset.fit === "variance");
+        const file = points.filter(p => p.dataset.file === "env");
         for (const a of file) for (const b of file) {
             const middle = p => { const r = place(p); return [(r.left + r.right) / 2, (r.top + r.bottom) / 2]; };
             if (+a.dataset.bytes > 1.2 * b.dataset.bytes && middle(a)[0] <= middle(b)[0]) wrong.push(chart + ": x order");
@@ -77,7 +77,7 @@ JS
 name="sky <b>&\"'.pfm"
 "$make_sky" "$work/sky.pfm"
 mv "$work/sky.pfm" "$work/$name"
-(cd "$work" && "$acdf" sweep "$name" -o out --budgets 4KiB,16KiB --quiet)
+(cd "$work" && "$acdf" sweep "$name" -o out --files env,env-mis,local --budgets 8KiB,32KiB --quiet)
 
 for width in 1280 390; do
     # The page as it is: the console must stay silent.

@@ -1,12 +1,12 @@
 // What a sweep recommends and writes, on made-up rows and on a tiny probe.
 #include "build/environment.h"
 #include "build/own_terms.h"
-#include "measure/samplers/full_cdf.h"
 #include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/synthetic.h"
 #include "tools/sweep/advice.h"
 #include "tools/sweep/page.h"
 #include "tools/sweep/page_chart.h"
+#include "tools/sweep/renderers.h"
 #include "tools/sweep/sweep.h"
 #include "tools/sweep/text.h"
 #include "tools/sweep/timing.h"
@@ -27,7 +27,8 @@ SweepRow row(const char* system, const char* fit, std::uint64_t bytes, double va
              std::vector<double> sample = {}) {
     SweepRow out;
     out.system = system;
-    out.fit = fit;
+    out.file = fit;
+    out.command = "brdf";
     out.label = *fit ? fit : system;
     out.options = *fit ? "--budget " + std::to_string(bytes) : "";
     out.bytes = bytes;
@@ -39,10 +40,10 @@ SweepRow row(const char* system, const char* fit, std::uint64_t bytes, double va
 /// Two fits, and baselines of which one wins at equal time, one loses, one is even and one is biased.
 Sweep made_up() {
     Sweep sweep;
-    sweep.kind = SweepKind::local;
-    sweep.source = "probe.exr";
-    sweep.command = "acdf local probe.exr";
-    sweep.output = "probe.local.acdf";
+    sweep.kind = SweepKind::brdf;
+    sweep.source = "nickel.binary";
+    sweep.input = "nickel.binary";
+    sweep.output = "nickel";
     sweep.conditions = 8;
     sweep.rows = {row("acdf", "variance", 4096, 0.1, {100, 100, 100, 100, 100, 100}),
                   row("acdf", "variance", 65536, 0.006, {100, 110, 90, 100, 100, 105}),
@@ -90,7 +91,7 @@ TEST(SweepAdvice, SaysSoInWords) {
     Advice advice = advise(sweep);
     EXPECT_EQ(advice.sentence, "64 KiB reaches a relative variance of 0.006, 0.97 % noise at 64 samples per pixel; "
                                "beyond it you gain nothing visible.");
-    EXPECT_EQ(advice.command, "acdf local probe.exr --budget 65536 -o probe.local.acdf");
+    EXPECT_EQ(advice.command, "acdf brdf nickel.binary --budget 65536 -o nickel.acdf");
     EXPECT_NE(advice.rule.find("0.0064"), std::string::npos) << advice.rule;
     sweep.visible.spp = 1;
     advice = advise(sweep);
@@ -102,74 +103,102 @@ TEST(SweepAdvice, SaysSoInWords) {
     EXPECT_EQ(advise(sweep).sentence.rfind("64 KiB is enough", 0), 0u) << advise(sweep).sentence;
 }
 
-/// Three files of an environment: what the light itself says is wrong for pictures.
-Sweep made_up_pictures() {
+SweepRow light_row(const char* system, const char* file, std::uint64_t bytes, Given needs, bool needs_mis,
+                   double alone, double mis) {
+    SweepRow out = row(system, file, bytes, 0.1, {100, 100, 100, 100, 100, 100});
+    out.command = needs == Given::nothing ? "env" : "local";
+    out.needs = needs;
+    out.needs_mis = needs_mis;
+    out.file_bytes = out.ours() ? bytes / 2 : 0;
+    out.times.pdf = out.times.sample;
+    for (std::size_t c = 0; c < kCases; ++c) {
+        out.noise[light_alone][c] = {needs_mis ? HUGE_VAL : alone, needs_mis ? HUGE_VAL : 0.25 * alone};
+        out.noise[with_mis][c] = {mis, 0.25 * mis};
+    }
+    return out;
+}
+
+/// Files of all kinds, as probes have them.
+Sweep made_up_probe() {
     Sweep sweep;
-    sweep.kind = SweepKind::environment;
     sweep.source = "probe.exr";
-    sweep.command = "acdf env probe.exr";
-    sweep.output = "probe.acdf";
+    sweep.input = "probe.exr";
+    sweep.output = "probe";
     sweep.conditions = 8;
-    const auto add = [&](SweepRow one, std::array<double, kSituations> lit) {
-        for (std::size_t i = 0; i < kSituations; ++i)
-            one.lit[i] = {lit[i], 0.5 * lit[i], 2.0 * lit[i], 0.25 * lit[i]};
-        one.times.pdf = one.times.sample;
-        sweep.rows.push_back(std::move(one));
-    };
-    add(row("acdf", "variance", 4096, 0.1, {100, 100, 100, 100, 100, 100}), {4.0, 2.0, 6.0, 3.0});
-    add(row("acdf", "variance", 65536, 0.004, {100, 110, 90, 100, 100, 105}), {3.8, 1.9, 5.9, 2.95});
-    add(row("acdf", "variance", 262144, 0.0, {100, 100, 100, 100, 100, 100}), {3.75, 1.85, 5.85, 2.9});
-    add(row("full_cdf", "", 8000000, 0.0, {200, 220, 180, 200, 200, 210}), {3.75, 1.85, 5.85, 2.9});
-    add(row("mis_compensation", "", 8000000, HUGE_VAL, {200, 220, 180, 200, 200, 210}),
-        {HUGE_VAL, 0.5, HUGE_VAL, 2.0});
-    sweep.reference = 3;
+    sweep.rows = {light_row("acdf", "env", 16384, Given::nothing, false, 4.0, 2.0),
+                  light_row("acdf", "env", 65536, Given::nothing, false, 3.9, 1.9),
+                  light_row("acdf", "env-mis", 16384, Given::nothing, true, 0.0, 1.5),
+                  light_row("acdf", "local", 65536, Given::normal, false, 0.8, 0.7),
+                  light_row("acdf", "local", 1048576, Given::normal, false, 0.5, 0.6),
+                  light_row("acdf", "local-mis", 65536, Given::normal, true, 0.0, 0.405),
+                  light_row("acdf", "local-mis", 1048576, Given::normal, true, 0.0, 0.4),
+                  light_row("full_cdf", "", 8000000, Given::nothing, false, 3.8, 1.85),
+                  light_row("tiles", "", 8000000, Given::normal, false, 0.6, 0.3)};
+    sweep.reference = 7;
     sweep.costs = {500.0, 20.0};
     return sweep;
 }
 
-TEST(SweepAdvice, PicturesDecideNotTheLightItself) {
-    Sweep sweep = made_up_pictures();
-    const auto recommended = [&] { return recommended_row(sweep.rows, sweep.visible, sweep.costs, sweep.numbers); };
-    EXPECT_EQ(recommended().row, 0u); // sqrt(4 / 3.75) is 1.03
-    EXPECT_FALSE(recommended().reached);
-    sweep.rows[0].lit[hidden_partner].mean = 3.3; // sqrt(3.3 / 2.9) is 1.07, in one situation
-    EXPECT_EQ(recommended().row, 1u);
-    sweep.rows[1].lit[open_partner].mean = 2.2;
-    EXPECT_EQ(recommended().row, 2u);
-    sweep.numbers = measure::Numbers::sobol; // where they are given, those
-    EXPECT_EQ(recommended().row, 0u);
-    sweep = made_up_pictures();
-    sweep.rows[1].times.sample.assign(6, 10.0); // faster by 15 % of all that a sample costs
-    EXPECT_EQ(recommended().row, 1u);
-    sweep.costs.shadow_ray_ns = 1e5; // then it does not matter
-    EXPECT_EQ(recommended().row, 0u);
-    sweep = made_up_pictures();
-    for (Lit& lit : sweep.rows[2].lit) lit.mean = 0.006;
-    EXPECT_EQ(recommended().row, 2u);
-    EXPECT_TRUE(recommended().reached);
+TEST(SweepAdvice, EachKindOfRendererHasAFile) {
+    Sweep sweep = made_up_probe();
+    const auto rows = [&] {
+        std::map<std::string, std::size_t> out;
+        for (const RendererAdvice& one : advise_renderers(sweep)) out[to_string(one.renderer)] = one.row;
+        return out;
+    };
+    using Rows = std::map<std::string, std::size_t>;
+    // Of a kind the smallest within 5 % of the least noise: sqrt(4 / 3.9) is 1.01, sqrt(0.8 / 0.5) is 1.26.
+    EXPECT_EQ(rows(), (Rows{{"alone", 0}, {"mis", 2}, {"alone_normal", 4}, {"mis_normal", 5}}));
+    sweep.rows[6].times.sample.assign(6, 1500.0); // slow: then it does not set what is good enough
+    for (Noise& noise : sweep.rows[6].noise[with_mis]) noise.exact = 0.3;
+    EXPECT_EQ(rows()["mis_normal"], 5u);
+    sweep.costs.shadow_ray_ns = 1e6; // then the time of a sample does not matter
+    EXPECT_EQ(rows()["mis_normal"], 6u);
+    sweep = made_up_probe();
+    for (Noise& noise : sweep.rows[3].noise[light_alone]) noise.exact = 0.001; // cannot be seen
+    for (Noise& noise : sweep.rows[4].noise[light_alone]) noise.exact = 0.0001;
+    EXPECT_EQ(rows()["alone_normal"], 3u);
+    sweep.numbers = measure::Numbers::sobol;
+    for (Noise& noise : sweep.rows[0].noise[light_alone]) noise.sobol = 2.0;
+    EXPECT_EQ(rows()["alone"], 1u);
 }
 
-TEST(SweepAdvice, SaysWhatPicturesHave) {
-    const Sweep sweep = made_up_pictures();
-    const Advice advice = advise(sweep);
-    EXPECT_EQ(
-        advice.sentence,
-        "4 KiB is enough: a diffuse surface has 25 % noise with it at 64 samples per pixel, and 24 % with the "
-        "full_cdf; no other size or fit tried lowers it by more than 5 %.");
-    ASSERT_EQ(advice.situations.size(), std::size_t{kSituations});
-    EXPECT_EQ(advice.situations[open_alone].best_baseline, 3u);
-    EXPECT_EQ(advice.situations[open_partner].best_baseline, 4u);
-    const double cost = (0.5 * (200 + 200 + 20) + 500) / (0.5 * (100 + 100 + 20) + 500);
-    EXPECT_NEAR(advice.situations[open_partner].over_best_baseline.value, 0.5 / 2.0 * cost, 1e-9);
-    const std::string all = advice.situations[open_alone].sentence + advice.situations[open_partner].sentence;
-    for (const char* part :
-         {"50 %, 25 %, 12 % noise at 16, 64, 256 independent samples (median point: 35 %, 18 %, 8.8 %)",
-          "12 % at 64 samples of a scrambled Sobol' sequence", "times less noise than the full_cdf",
-          "times more noise than the best baseline, the mis_compensation"})
-        EXPECT_NE(all.find(part), std::string::npos) << part << "\n" << all;
+TEST(SweepAdvice, PositionsCountOnAMesh) {
+    Sweep sweep = made_up_probe();
+    sweep.rows.push_back(light_row("acdf", "visibility", 4194304, Given::position, false, 0.2, 0.2));
+    EXPECT_EQ(advise_renderers(sweep).size(), 4u);
+    sweep.on_mesh = true;
+    const std::vector<RendererAdvice> advice = advise_renderers(sweep);
+    ASSERT_EQ(advice.size(), 6u);
+    EXPECT_EQ(to_string(advice[5].renderer), "mis_position");
+    EXPECT_EQ(advice[4].row, 9u);
+    EXPECT_EQ(advice[5].row, 9u);
+    EXPECT_EQ(advice[3].row, 5u); // who hands over the normal alone cannot use it
+    // What is not hidden does not count there.
+    sweep.rows[9].noise[with_mis][diffuse_open].exact = sweep.rows[9].noise[with_mis][glossy_open].exact = 100.0;
+    EXPECT_EQ(advise_renderers(sweep)[5].row, 9u);
+    sweep.rows[9].noise[with_mis][diffuse_hidden].exact = 100.0;
+    EXPECT_EQ(advise_renderers(sweep)[5].row, 5u);
+}
+
+TEST(SweepAdvice, SaysWhatRenderersGet) {
+    const Sweep sweep = made_up_probe();
+    const RendererAdvice advice = advise_renderers(sweep)[3];
+    EXPECT_EQ(advice.command, "acdf local probe.exr --budget 65536 -o probe.local.acdf");
+    EXPECT_DOUBLE_EQ(advice.variance, 0.405);
+    ASSERT_TRUE(advice.other && advice.baseline);
+    EXPECT_EQ(advice.other->row, 4u);
+    EXPECT_NEAR(advice.other->variance.value, 0.6 / 0.405, 1e-12); // all take the same time
+    EXPECT_EQ(advice.baseline->row, 8u);
+    EXPECT_NEAR(advice.over_reference.value, 1.85 / 0.405, 1e-12);
+    EXPECT_EQ(advice.sentence,
+              "local-mis, 32 KiB (64 KiB in memory): 8 % noise at 64 samples; after the same time 2.14 times less "
+              "noise than the full_cdf, 1.16 times more noise than tiles, 1.22 times less noise than local of "
+              "512 KiB.");
     const std::string html = sweep_html(sweep);
-    EXPECT_EQ(html.find("1/"), std::string::npos);
-    EXPECT_NE(html.find("times smaller than the full_cdf"), std::string::npos);
+    for (const char* part :
+         {"data-renderer=\"alone\"", "data-renderer=\"mis_normal\"", "acdf local probe.exr --budget 65536"})
+        EXPECT_NE(html.find(part), std::string::npos) << part;
     EXPECT_EQ(noise_ratio_text(4.0), "2 times less noise than");
     EXPECT_EQ(noise_ratio_text(1.0 / 9.0), "3 times more noise than");
     EXPECT_EQ(noise_ratio_text(1.004), "the same noise as");
@@ -249,10 +278,15 @@ void expect_consistent(const Sweep& sweep) {
     const auto column = [&](const char* name) {
         return std::size_t(std::find(csv[0].begin(), csv[0].end(), name) - csv[0].begin());
     };
-    std::map<std::string, const char*> charts = {{"variance", "relative_variance"},     {"weight", "max_weight"},
-                                                 {"sample", "ns_per_sample"},           {"pdf", "ns_per_pdf"},
-                                                 {"equal-time", "equal_time_variance"}, {"build", "build_seconds"}};
-    if (sweep.kind == SweepKind::environment) charts["surface"] = "irradiance_variance";
+    std::map<std::string, const char*> charts = {
+        {"weight", "max_weight"}, {"sample", "ns_per_sample"}, {"pdf", "ns_per_pdf"}, {"build", "build_seconds"}};
+    if (sweep.kind == SweepKind::brdf) {
+        charts["variance"] = "relative_variance";
+        charts["equal-time"] = "equal_time_variance";
+    } else {
+        charts["alone"] = sweep.timed ? "equal_time_alone" : "alone";
+        charts["mis"] = sweep.timed ? "equal_time_mis" : "mis";
+    }
     for (const auto& [chart, name] : charts) {
         std::size_t expected = 0;
         const std::size_t at = column(name);
@@ -262,7 +296,7 @@ void expect_consistent(const Sweep& sweep) {
         for (auto point : points) {
             const auto& line = csv[std::size_t(std::stoul(point["row"])) + 1];
             EXPECT_EQ(point["system"], line[column("system")]);
-            EXPECT_EQ(point["fit"], line[column("fit")]);
+            EXPECT_EQ(point["file"], line[column("file")]);
             EXPECT_EQ(point["bytes"], line[column("bytes")]);
             EXPECT_EQ(point["variance"], line[column("relative_variance")]);
             EXPECT_EQ(point["value"], line[at]) << chart;
@@ -271,7 +305,7 @@ void expect_consistent(const Sweep& sweep) {
 }
 
 TEST(SweepOutputs, CsvJsonAndPageHoldTheSameNumbers) {
-    expect_consistent(made_up_pictures());
+    expect_consistent(made_up_probe());
     Sweep sweep = made_up();
     expect_consistent(sweep);
     sweep.timed = false;
@@ -284,7 +318,7 @@ TEST(SweepOutputs, NamesAreTextWhateverTheyHold) {
     Sweep sweep = made_up();
     const std::string hostile = "<script>alert(1)</script>\"><img src=x onerror='y'>&amp;\x01`.exr";
     sweep.source = hostile;
-    sweep.command = "acdf local " + shell_word(hostile);
+    sweep.input = shell_word(hostile);
     sweep.output = hostile;
     sweep.description = hostile;
     sweep.notes = {hostile};
@@ -313,8 +347,8 @@ TEST(SweepOutputs, ThePageLoadsNothing) {
 SweepOptions quick() {
     SweepOptions options;
     options.budgets = {1500, 2500};
+    options.files = {"env", "env-cdf"};
     options.timing = false;
-    options.normals = 4;
     options.points = 6;
     options.seeds = 4;
     return options;
@@ -322,21 +356,20 @@ SweepOptions quick() {
 
 TEST(SweepRows, OfATinyProbeAreWhatTheFilesHave) {
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
-    Sweep sweep = sweep_environment(builder::target_of(target, acdf::test::nearest_lookup()), {}, quick());
-    sweep.source = "tiny.exr", sweep.command = "acdf env tiny.exr", sweep.output = "tiny.acdf";
-    std::map<std::string, int> systems, fits;
+    Sweep sweep = sweep_probe(builder::target_of(target, acdf::test::nearest_lookup()), {}, nullptr, quick());
+    sweep.source = sweep.input = "tiny.exr", sweep.output = "tiny";
+    std::map<std::string, int> systems, files;
     for (const SweepRow& r : sweep.rows) {
         ++systems[r.system];
-        ++fits[r.fit];
+        ++files[r.file];
         EXPECT_GT(r.bytes, 0u);
-        EXPECT_GE(r.relative_variance, 0.0) << r.label;
-        for (const Lit& lit : r.lit) {
-            EXPECT_GE(lit.mean, 0.0) << r.label;
-            EXPECT_LE(lit.median, lit.worst) << r.label;
-            EXPECT_EQ(std::isinf(lit.sobol), std::isinf(lit.mean)) << r.label;
-        }
-        EXPECT_GE(r.lit[open_alone].mean, r.system == "full_cdf" ? 0.5 : 0.0) << r.label; // half is sampled in vain
-        if (r.fit == "variance") {
+        for (const auto& estimator : r.noise)
+            for (const Noise& noise : estimator) {
+                EXPECT_GE(noise.exact, 0.0) << r.label;
+                EXPECT_EQ(std::isinf(noise.sobol), std::isinf(noise.exact)) << r.label;
+            }
+        EXPECT_EQ(std::isinf(r.noise[light_alone][diffuse_open].exact), r.needs_mis) << r.label;
+        if (r.file == "env") {
             build::EnvironmentOptions options;
             options.fit.goal.kind = compress::Goal::Kind::budget;
             options.fit.goal.budget = r.options == "--budget 1500" ? 1500 : 2500;
@@ -348,29 +381,28 @@ TEST(SweepRows, OfATinyProbeAreWhatTheFilesHave) {
             EXPECT_EQ(r.relative_variance, file.accuracy.relative_variance);
         }
     }
-    EXPECT_EQ(fits["variance"], 2);
-    EXPECT_GE(fits["cdf"], 1);
-    for (const char* baseline :
-         {"full_cdf", "alias_table", "hierarchical_warp", "downsampled_cdf", "mis_compensation"})
+    EXPECT_EQ(files["env"], 2);
+    EXPECT_GE(files["env-cdf"], 1);
+    for (const char* baseline : {"full_cdf", "alias_table", "hierarchical_warp", "mis_compensation", "tiling_512"})
         EXPECT_GE(systems[baseline], 1) << baseline;
     EXPECT_EQ(sweep.rows[sweep.reference].system, "full_cdf");
     EXPECT_EQ(sweep.rows[sweep.reference].relative_variance, 0.0);
-    EXPECT_GE(sweep.pictures.size(), 3u);
+    EXPECT_EQ(sweep.pictures.size(), 3u);
     expect_consistent(sweep);
 }
 
-TEST(SweepRows, GoalsOutOfReachAreNoted) {
+TEST(SweepRows, WhatIsOutOfReachIsNoted) {
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
     SweepOptions options = quick();
     options.budgets = {100, 2500};
-    options.fits = {"variance"};
+    options.files = {"env"};
     options.pictures = false;
-    const Sweep sweep = sweep_environment(builder::target_of(target, acdf::test::nearest_lookup()), {}, options);
+    const builder::Target fitted = builder::target_of(target, acdf::test::nearest_lookup());
+    const Sweep sweep = sweep_probe(fitted, {}, nullptr, options);
     ASSERT_EQ(sweep.notes.size(), 1u);
     EXPECT_NE(sweep.notes[0].find("100 bytes"), std::string::npos) << sweep.notes[0];
     options.budgets = {100};
-    EXPECT_THROW(sweep_environment(builder::target_of(target, acdf::test::nearest_lookup()), {}, options),
-                 std::invalid_argument);
+    EXPECT_THROW(sweep_probe(fitted, {}, nullptr, options), std::invalid_argument);
 }
 
 } // namespace

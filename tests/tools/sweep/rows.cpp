@@ -1,4 +1,4 @@
-// Rows of sweeps of local and BRDF files.
+// Rows of sweeps of probes and BRDFs.
 #include "build/own_terms.h"
 #include "input/brdf/brdf.h"
 #include "tests/inputs/nearest_lookup.h"
@@ -17,51 +17,39 @@ namespace {
 SweepOptions small_sweep() {
     SweepOptions options;
     options.budgets = {16384};
-    options.fits = {"variance"};
     options.timing = false;
     options.pictures = false;
-    options.normals = 4;
+    options.points = 6;
     options.views = 2;
     options.seeds = 4;
     return options;
 }
 
-TEST(SweepRows, LocalFilesBesideTheirBaselines) {
+TEST(SweepRows, FilesOfAllKindsBesideBaselines) {
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
-    SweepOptions options = small_sweep();
-    const Sweep sweep = sweep_local(builder::target_of(target, acdf::test::nearest_lookup()), {}, options);
+    const Sweep sweep =
+        sweep_probe(builder::target_of(target, acdf::test::nearest_lookup()), {}, nullptr, small_sweep());
     std::map<std::string, const SweepRow*> by;
-    for (const SweepRow& r : sweep.rows) by[r.system] = &r;
-    ASSERT_EQ(by.size(), 8u);
-    EXPECT_LT(by["acdf"]->relative_variance, 0.2 * by["full_cdf"]->relative_variance);
-    EXPECT_NEAR(by["resampling_32"]->relative_variance, by["full_cdf"]->relative_variance / 32.0, 1e-12);
-    EXPECT_LT(by["cdf_cosine"]->relative_variance, by["full_cdf"]->relative_variance);
-    for (const SweepRow& r : sweep.rows) {
-        EXPECT_LE(r.relative_variance, r.worst) << r.label;
-        EXPECT_LE(r.median, r.worst) << r.label;
-        const bool own_numbers = r.system == "resampling_32";
-        EXPECT_EQ(r.sobol == r.sobol, !own_numbers) << r.label;
+    for (const SweepRow& r : sweep.rows) by[r.ours() ? r.file : r.system] = &r;
+    const auto noise = [&](const char* name, Estimator estimator) {
+        return by.at(name)->noise[estimator][diffuse_open].exact;
+    };
+    EXPECT_LT(noise("local", light_alone), 0.2 * noise("full_cdf", light_alone));
+    EXPECT_LT(noise("full_cdf", with_mis), noise("full_cdf", light_alone));
+    EXPECT_LT(noise("local-mis", with_mis), noise("local", with_mis));
+    EXPECT_LT(noise("env-mis", with_mis), noise("env", with_mis));
+    for (const char* name : {"env-mis", "local-mis"}) {
+        EXPECT_TRUE(by.at(name)->needs_mis) << name;
+        EXPECT_TRUE(std::isinf(noise(name, light_alone))) << name;
     }
-    EXPECT_LT(by["full_cdf"]->sobol, 0.8 * by["full_cdf"]->relative_variance);
-    EXPECT_LT(by["acdf"]->sobol, by["full_cdf"]->sobol);
-}
-
-// A set of a single point is uniform: then sampled variances are those of the sums.
-TEST(SweepRows, SobolOfOneSampleIsThatOfTheSums) {
-    SweepOptions options = small_sweep();
-    options.visible.spp = 1;
-    options.seeds = 2000;
-    const compress::Target target = acdf_test::noise_target(64, 32, 7);
-    for (const SweepRow& r :
-         sweep_local(builder::target_of(target, acdf::test::nearest_lookup()), {}, options).rows)
-        if (r.relative_variance > 0.1 && r.system != "resampling_32") {
-            EXPECT_NEAR(r.sobol, r.relative_variance, 0.1 * r.relative_variance) << r.label;
-        }
+    const Noise& full = by.at("full_cdf")->noise[light_alone][diffuse_open];
+    EXPECT_LT(full.sobol, 0.8 * full.exact);
 }
 
 TEST(SweepRows, OfABrdf) {
     const auto brdf = input::open_brdf("ggx:alpha=0.3");
     SweepOptions options = small_sweep();
+    options.files = {"variance"};
     options.visible.spp = 1; // uniform numbers, as above; samples that are lost below the surface count
     options.seeds = 3000;
     const Sweep sweep = sweep_brdf(*brdf, options);
