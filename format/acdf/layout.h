@@ -27,7 +27,8 @@ typedef enum AcdfKind {
     ACDF_KIND_ENVIRONMENT = 1,
     ACDF_KIND_LOCAL = 2,
     ACDF_KIND_BRDF = 3,
-    ACDF_KIND_TABLE = 4
+    ACDF_KIND_TABLE = 4,
+    ACDF_KIND_INDEXED = 5 /* an environment of several maps */
 } AcdfKind;
 
 typedef enum AcdfCodec {
@@ -92,6 +93,7 @@ typedef enum AcdfHeuristic {
 #define ACDF_CHUNK_VISIBILITY ACDF_FOURCC('P', 'L', 'A', 'C')
 #define ACDF_CHUNK_PORTALS ACDF_FOURCC('P', 'O', 'R', 'T')
 #define ACDF_CHUNK_HALVINGS ACDF_FOURCC('H', 'A', 'L', 'V')
+#define ACDF_CHUNK_MAPS ACDF_FOURCC('M', 'A', 'P', 'S')
 
 #define ACDF_CHUNK_FLAG_CRITICAL 1u
 
@@ -174,6 +176,28 @@ typedef struct AcdfHalvingsHeader {
 #define ACDF_LEAST_CODE_BITS 2u
 #define ACDF_MOST_CODE_BITS 12u
 #define ACDF_MOST_HALVINGS 0x7FFFFFFu /* 2^27 - 1 */
+
+#ifndef ACDF_ENVIRONMENT_ONLY
+/* Chunk MAPS of an indexed environment, beside HALV: this, then for each indexed axis a double an index, its
+ * coordinate, then an AcdfMap for each map, then a bit for each halving, 1 where each map has a code of its own,
+ * then for each map the codes of these halvings. Runs of bits as in HALV. */
+typedef struct AcdfMapsHeader {
+    uint32_t map_count;
+    uint32_t split_count; /* halvings with a code for each map: the top of the tree */
+    uint32_t code_bits;   /* ACDF_LEAST_MAP_CODE_BITS to ACDF_MOST_CODE_BITS */
+    uint32_t sun;         /* 0: none; else 1 to ACDF_MOST_SUN, the exponent of its profile is 2^(sun - 1) - 1 */
+} AcdfMapsHeader;
+#define ACDF_LEAST_MAP_CODE_BITS 4u
+#define ACDF_MOST_SUN 4u
+#define ACDF_MOST_INDEXED_AXES 3u
+
+typedef struct AcdfMap {
+    float share;     /* its integral over `total` */
+    float sun_share; /* of its light in the cone of the sun, in [0, 1) */
+    float radius;    /* of the cone, radians; 0 where the sun is not known */
+    float sun[3];    /* unit, to its middle; zeros where it is not known */
+} AcdfMap;
+#endif
 
 #ifndef ACDF_ENVIRONMENT_ONLY
 /* The streams of codec 2 (SPEC.md §7.4). Where there are several sizes, the stream of the smallest is named. */
@@ -350,6 +374,8 @@ ACDF_STATIC_ASSERT(sizeof(AcdfBin) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfPartner) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfPartnerRecord) == 8);
 #ifndef ACDF_ENVIRONMENT_ONLY
+ACDF_STATIC_ASSERT(sizeof(AcdfMapsHeader) == 16);
+ACDF_STATIC_ASSERT(sizeof(AcdfMap) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfPlanes) == 44);
 ACDF_STATIC_ASSERT(sizeof(AcdfTiles) == 528);
 ACDF_STATIC_ASSERT(sizeof(AcdfSplit) == 8);

@@ -6,6 +6,7 @@
 #include "memory.h"
 #include "opened_file.h"
 #ifndef ACDF_ENVIRONMENT_ONLY
+#include "tables/indexed.h"
 #include "tables/tree_survey.h"
 #endif
 
@@ -160,6 +161,14 @@ bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
     file.memory[1] = parts.inflated;
     if (!status.ok()) return false;
     take_parts(parts, file);
+#ifndef ACDF_ENVIRONMENT_ONLY
+    if (file.kind() == ACDF_KIND_INDEXED) {
+        file.indexed = make_indexed(parts, options.allocator, file.memory[2]);
+        if (!file.indexed.top) return fail(status, 1003, "%llu halvings", ull{parts.halving_count});
+        file.table_bytes = 4 * u64{file.indexed.top->words};
+        return true;
+    }
+#endif
     if (parts.halvings && !make_halved(parts, options.tables, file))
         return fail(status, 1003, "%llu halvings", ull{parts.halving_count});
 #ifndef ACDF_ENVIRONMENT_ONLY

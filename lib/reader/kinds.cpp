@@ -2,6 +2,7 @@
 #include "check/check.h"
 #include "opened_file.h"
 #include "tables/brdf.h"
+#include "tables/indexed.h"
 #include "tables/local.h"
 #include "tables/table_entries.h"
 
@@ -96,6 +97,7 @@ void make_view(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) noe
 LocalEnvironmentView File::local() const noexcept { return LocalEnvironmentView(opened_->local); }
 BrdfView File::brdf() const noexcept { return BrdfView(opened_->brdf); }
 TableView File::table() const noexcept { return TableView(opened_->table); }
+IndexedEnvironment File::indexed() const noexcept { return IndexedEnvironment(opened_->indexed); }
 const AcdfBlend& File::blend() const noexcept { return opened_->blend; }
 const AcdfFast& File::fast() const noexcept { return opened_->fast; }
 

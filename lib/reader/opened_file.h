@@ -24,6 +24,7 @@ struct AcdfFile {
     AcdfLocal local;
     AcdfBrdf brdf;
     AcdfTable table;
+    AcdfIndexed indexed;
 #endif
     AcdfAllocator allocator; ///< which gave what follows
     AcdfBlock own;           ///< where this lies

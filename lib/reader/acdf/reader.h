@@ -35,6 +35,7 @@ class EnvironmentView;
 class LocalEnvironmentView;
 class BrdfView;
 class TableView;
+class IndexedEnvironment;
 #endif
 
 /// What kind of failure; the numbers are stable.
@@ -138,6 +139,8 @@ public:
     BrdfView brdf() const noexcept;
     /// The view of a table file: only where kind() == ACDF_KIND_TABLE.
     TableView table() const noexcept;
+    /// The view of an environment of several maps: only where kind() == ACDF_KIND_INDEXED.
+    IndexedEnvironment indexed() const noexcept;
     /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
     /// many there are (acdf/moved.h).
     int memory(AcdfMove* moves) const noexcept;

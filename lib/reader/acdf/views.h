@@ -1,6 +1,6 @@
 // What a renderer holds of an open file: a pdf over directions or points, a few words by value. C++17,
-// freestanding over acdf/sample.h, local.h, brdf.h and table.h. For kernels define ACDF_FN and ACDF_METHOD, for
-// example as `static inline __host__ __device__` and __host__ __device__.
+// freestanding over acdf/sample.h, local.h, brdf.h, table.h and indexed.h. For kernels define ACDF_FN and
+// ACDF_METHOD, for example as `static inline __host__ __device__` and __host__ __device__.
 //
 // Views come from acdf::File (acdf/reader.h). One that is made by default is empty, to be a member until it is
 // assigned to: nothing but empty() may be asked of it.
@@ -8,6 +8,7 @@
 
 #include <acdf/brdf.h>
 #include <acdf/environment_view.h>
+#include <acdf/indexed.h>
 #include <acdf/local.h>
 #include <acdf/table.h>
 
@@ -174,6 +175,66 @@ public:
 
 private:
     AcdfTable data_ = {};
+};
+
+/// An environment at some coordinates of an IndexedEnvironment: up to eight of its maps, mixed. Half a KiB by
+/// value; valid while the File lives. All functions are const, thread-safe, allocate and throw nothing.
+class MixedEnvironment {
+public:
+    MixedEnvironment() noexcept = default;
+    ACDF_METHOD explicit MixedEnvironment(const AcdfMixed& data) noexcept : data_(data) {}
+    ACDF_METHOD bool empty() const noexcept { return data_.columns == 0; }
+
+    /// Samples a direction; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite, > 0.
+    ACDF_INLINE_METHOD DirectionSample sample(double u0, double u1) const noexcept {
+        return acdf_mixed_sample(&data_, u0, u1);
+    }
+    /// The pdf in sr^-1 of a unit direction; 0 where none falls, for NaN and for non-unit directions.
+    ACDF_INLINE_METHOD float pdf(const float direction[3]) const noexcept {
+        return acdf_mixed_pdf(&data_, direction);
+    }
+    /// Random numbers that sample `direction`; false where the pdf is 0.
+    ACDF_METHOD bool invert(const float direction[3], double u[2]) const noexcept {
+        return acdf_mixed_invert(&data_, direction, u) != 0;
+    }
+    /// Integral of the sampled function over the sphere, linear between maps.
+    ACDF_METHOD double total() const noexcept { return data_.total; }
+    /// The share of samples in the cone of the sun; 0 where there is none.
+    ACDF_METHOD double sun_share() const noexcept { return data_.sun_share; }
+    /// The plain data, for acdf/indexed.h in another language or on a GPU.
+    ACDF_METHOD const AcdfMixed& data() const noexcept { return data_; }
+
+private:
+    AcdfMixed data_ = {};
+};
+
+/// Environments along one to three axes, such as the hours of a day. A few words by value; valid while its File
+/// lives.
+class IndexedEnvironment {
+public:
+    IndexedEnvironment() noexcept = default;
+    ACDF_METHOD explicit IndexedEnvironment(const AcdfIndexed& data) noexcept : data_(data) {}
+    ACDF_METHOD bool empty() const noexcept { return data_.columns == 0; }
+
+    /// How many axes there are.
+    ACDF_METHOD std::uint32_t axes() const noexcept { return data_.axes; }
+    /// The environment at coordinates[axes()], mixed of the maps around them. Beyond the first and the last of an
+    /// axis these stand. Takes about a microsecond: once a frame.
+    ACDF_METHOD MixedEnvironment at(const double* coordinates) const noexcept {
+        AcdfMixed out;
+        acdf_indexed_at(&data_, coordinates, &out);
+        return MixedEnvironment(out);
+    }
+    /// The same of one, two or three axes: numbers that are left out are of no meaning where the axis is missing.
+    ACDF_METHOD MixedEnvironment at(double first, double second = 0.0, double third = 0.0) const noexcept {
+        const double coordinates[3] = {first, second, third};
+        return at(coordinates);
+    }
+    /// The plain data, for acdf/indexed.h in another language or on a GPU.
+    ACDF_METHOD const AcdfIndexed& data() const noexcept { return data_; }
+
+private:
+    AcdfIndexed data_ = {};
 };
 
 } // namespace acdf

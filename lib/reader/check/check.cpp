@@ -94,7 +94,7 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
                        expected);
     }
     check_file_length(header, size, report);
-    if (header.kind < ACDF_KIND_ENVIRONMENT || header.kind > ACDF_KIND_TABLE)
+    if (header.kind < ACDF_KIND_ENVIRONMENT || header.kind > ACDF_KIND_INDEXED)
         report.add(2006, offsetof(AcdfHeader, kind), "kind %u is unknown", header.kind);
 #ifdef ACDF_ENVIRONMENT_ONLY
     else if (header.kind != ACDF_KIND_ENVIRONMENT) report.add(2006, offsetof(AcdfHeader, kind));
@@ -116,6 +116,7 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
 
 constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_TREE};
 constexpr u32 required_beside_halvings = 1; // the first of them
+constexpr u32 required_of_maps[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_HALVINGS, ACDF_CHUNK_MAPS};
 
 // Whether a known chunk may be in files of a kind.
 bool belongs(int known, u32 kind) {
@@ -123,8 +124,9 @@ bool belongs(int known, u32 kind) {
         known == chunk_grid)
         return kind == ACDF_KIND_LOCAL;
     if (known == chunk_views) return kind == ACDF_KIND_BRDF;
-    if (known == chunk_partner) return kind != ACDF_KIND_BRDF;
-    if (known == chunk_halvings) return kind == ACDF_KIND_ENVIRONMENT;
+    if (known == chunk_partner) return kind != ACDF_KIND_BRDF && kind != ACDF_KIND_INDEXED;
+    if (known == chunk_halvings) return kind == ACDF_KIND_ENVIRONMENT || kind == ACDF_KIND_INDEXED;
+    if (known == chunk_maps) return kind == ACDF_KIND_INDEXED;
     if (known == chunk_tiles || known == chunk_rows) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
     return true;
 }
@@ -213,12 +215,13 @@ bool has_chunk(const ChunkTable& table, u32 type) {
     return false;
 }
 
-void check_required(const ChunkTable& table, Report& report) {
+void check_required(const ChunkTable& table, u32 kind, Report& report) {
+    const u32* types = kind == ACDF_KIND_INDEXED ? required_of_maps : required_types;
     u32 count = sizeof required_types / sizeof *required_types;
-    if (has_chunk(table, ACDF_CHUNK_HALVINGS)) count = required_beside_halvings;
+    if (kind != ACDF_KIND_INDEXED && has_chunk(table, ACDF_CHUNK_HALVINGS)) count = required_beside_halvings;
     for (u32 i = 0; i < count; ++i)
-        if (!has_chunk(table, required_types[i]))
-            report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(required_types[i]).text);
+        if (!has_chunk(table, types[i]))
+            report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(types[i]).text);
 }
 
 void check_table(ChunkTable& table, const AcdfHeader& header, u64 size, Report& report) {
@@ -229,7 +232,7 @@ void check_table(ChunkTable& table, const AcdfHeader& header, u64 size, Report& 
         end = check_place(table, i, round_up(end, ACDF_ALIGNMENT), size, report);
         check_lengths(table, i, report);
     }
-    check_required(table, report);
+    check_required(table, header.kind, report);
     end = round_up(end, ACDF_ALIGNMENT);
     if (table.legal && header.file_length != end)
         report.add(3008, offsetof(AcdfHeader, file_length), "`file_length` is %llu, the chunks end at %llu",
@@ -263,8 +266,8 @@ void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
     }
 }
 
-// An environment by halvings.
-void check_halved_environment(const Payloads& payloads, const AcdfAllocator& allocator, Report& report,
+// An environment by halvings, or several.
+void check_halved_environment(const Payloads& payloads, u32 kind, const AcdfAllocator& allocator, Report& report,
                               Parts& parts) {
     const Payload& halvings = payloads.of[chunk_halvings];
     if (payloads.of[chunk_bins].data || payloads.of[chunk_tree].data)
@@ -272,8 +275,12 @@ void check_halved_environment(const Payloads& payloads, const AcdfAllocator& all
     if (parts.description->fit != ACDF_FIT_VARIANCE)
         report.add(6035, halvings.at(0), "with fit %u", parts.description->fit);
     if (!report.stopped()) check_halvings(halvings, report, allocator, parts);
-    if (!report.stopped())
-        check_environment(payloads.of[chunk_description], payloads.of[chunk_bins], report, parts);
+    if (report.stopped()) return;
+#ifndef ACDF_ENVIRONMENT_ONLY
+    if (kind == ACDF_KIND_INDEXED)
+        return check_indexed(payloads.of[chunk_description], payloads.of[chunk_maps], report, parts);
+#endif
+    check_environment(payloads.of[chunk_description], payloads.of[chunk_bins], report, parts);
 }
 
 } // namespace
@@ -300,11 +307,11 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_metadata(payloads.of[chunk_metadata], report, parts);
     if (!parts.description || report.stopped()) return report.verdict();
     if (payloads.of[chunk_halvings].data && belongs(chunk_halvings, header.kind))
-        check_halved_environment(payloads, allocator, report, parts);
+        check_halved_environment(payloads, header.kind, allocator, report, parts);
 #ifdef ACDF_ENVIRONMENT_ONLY
     else report.add(5002, description.at(offsetof(AcdfDescription, fit)));
 #else
-    else check_kind(payloads, header.kind, report, parts);
+    else if (header.kind != ACDF_KIND_INDEXED) check_kind(payloads, header.kind, report, parts); // else rule 3004
 #endif
     if (payloads.of[chunk_partner].data && belongs(chunk_partner, header.kind) && !report.stopped())
         check_partner(payloads.of[chunk_partner], header.kind, report, parts);

@@ -102,6 +102,10 @@ struct Parts {
     const AcdfLocalHeader* local = nullptr;       ///< of local environments
     const AcdfBrightTile* bright_tiles = nullptr; ///< local->bright_tile_count
     AcdfVisibilityTable visibility = {};          ///< of local environments; its header is null where absent
+    const AcdfMapsHeader* maps = nullptr;         ///< of an indexed environment
+    const double* coordinates = nullptr;          ///< of its maps
+    const AcdfMap* of_map = nullptr;              ///< maps->map_count
+    const std::uint8_t* map_splits = nullptr;     ///< a bit for each halving; then the codes of each map
     AcdfPortalTable portals = {};                 ///< beside visibility cells; its header is null where absent
     class TreeSurvey* survey = nullptr;           ///< given by the caller: made where it costs nothing
 #endif

@@ -69,6 +69,7 @@ enum KnownChunk {
     chunk_sums,
     chunk_grid,
     chunk_halvings,
+    chunk_maps,
     known_chunks
 };
 

@@ -81,7 +81,7 @@ void check_fields(const Payload& payload, const AcdfDescription& d, u32 kind, Re
         if (value < choice.low || value > choice.high)
             report.add(choice.rule, payload.at(choice.offset), "%u is unknown", value);
     }
-    if (kind >= ACDF_KIND_ENVIRONMENT && kind <= ACDF_KIND_TABLE && d.parameterization >= ACDF_PARAM_LATLONG &&
+    if (kind >= ACDF_KIND_ENVIRONMENT && kind <= ACDF_KIND_INDEXED && d.parameterization >= ACDF_PARAM_LATLONG &&
         d.parameterization <= ACDF_PARAM_OCTAHEDRAL && !goes_with(d.parameterization, kind))
         report.add(5016, payload.at(0), "parameterization %u with kind %u", d.parameterization, kind);
     if (d.bin_count < 1) report.add(5007, payload.at(offsetof(AcdfDescription, bin_count)), "there is no bin");

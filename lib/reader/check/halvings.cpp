@@ -1,5 +1,5 @@
 // Chunk HALV: its bits become flat nodes in the pass that checks them.
-#include "check/checker.h"
+#include "check/bits.h"
 #include "memory.h"
 
 namespace acdf {
@@ -15,30 +15,6 @@ constexpr u32 kAxes = 2;
 
 // The open ends of a tree are at most one a level of each axis, and one more.
 constexpr u32 most_open_nodes = 31 * kAxes + 1;
-
-// Bits of whole words, the lowest of each byte first.
-class Bits {
-public:
-    Bits(const Payload& payload, u64 begin, u64 end) : payload_(payload), at_(begin * 8), end_(end * 8) {}
-
-    bool has(u64 count) const { return end_ - at_ >= count; }
-    // Fewer than 32, which are there.
-    u32 take(u32 count) {
-        const u64 word = at_ / 32;
-        u64 held = load_u32(payload_.data + 4 * word);
-        if (at_ % 32 + count > 32) held |= u64{load_u32(payload_.data + 4 * word + 4)} << 32;
-        const u32 value = static_cast<u32>(held >> at_ % 32) & ((u32{1} << count) - 1);
-        at_ += count;
-        return value;
-    }
-    u64 place() const { return payload_.at(at_ / 8); }
-
-private:
-    const Payload& payload_;
-    u64 at_, end_;
-};
-
-u64 words_for(u64 bits) { return (bits + 31) / 32; }
 
 class HalvingsChecker {
 public:
@@ -166,7 +142,10 @@ void check_halvings(const Payload& payload, Report& report, const AcdfAllocator&
         report.add(6030, payload.at(0), "%llu bytes", static_cast<ull>(payload.size));
         return;
     }
-    if (parts.description->axis_count != kAxes) return; // check_environment reports it
+    u32 sampled = 0;
+    for (u32 axis = 0; axis < parts.description->axis_count; ++axis)
+        sampled += parts.axes[axis].role == ACDF_AXIS_SAMPLED;
+    if (sampled != kAxes) return; // check_environment_axes reports it
     HalvingsChecker checker(payload, report, parts);
     if (!checker.header_is_right()) return;
     const u32 count = reinterpret_cast<const AcdfHalvingsHeader*>(payload.data)->halving_count;

@@ -45,6 +45,9 @@ void check_visibility(const Payload& payload, Report& report, Parts& parts) noex
 void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
 void check_brdf_kind(const Payload& description, const Payload& views, Report& report, Parts& parts) noexcept;
+/// What an indexed environment has beside HALV: MAPS and its axes; needs parts.halvings. Sets parts.maps and what
+/// belongs to it.
+void check_indexed(const Payload& description, const Payload& maps, Report& report, Parts& parts) noexcept;
 /// The same of tables.
 void check_table_kind(const Payload& description, const Payload& bins, Report& report, const Parts& parts) noexcept;
 

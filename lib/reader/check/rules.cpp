@@ -26,7 +26,8 @@ const Rule rules[] = {
     {3001, error, "chunk-count", "There are 1 to 64 chunks and the file holds their whole table."},
     {3002, error, "critical-chunk", "A critical chunk is of a known type."},
     {3003, error, "duplicate-chunk", "No two chunks are of one type."},
-    {3004, error, "missing-chunk", "DESC is there, and BINS and TREE are unless HALV is."},
+    {3004, error, "missing-chunk",
+     "DESC is there, and BINS and TREE are unless HALV is; in files of kind 5 HALV and MAPS are."},
     {3005, error, "codec", "`codec` is 0 (none), 1 (zlib) or, of TREE, 2 (planes)."},
     {3006, error, "chunk-offset",
      "A payload starts at the first multiple of 64 after what comes before it, in the table's order."},
@@ -130,6 +131,14 @@ const Rule rules[] = {
      "more on its axis."},
     {6034, error, "halvings-padding", "The padding of HALV is zero."},
     {6035, error, "halvings-alone", "HALV comes without BINS and TREE, and with fit 4."},
+    {6036, error, "maps",
+     "MAPS is as long as its counts say: as many maps as bins, at most as many splits as halvings, codes of 4 to "
+     "12 "
+     "bits, and `sun` at most 4."},
+    {6037, error, "map-splits",
+     "`split_count` halvings have a code of each map; all above such a halving have one, too."},
+    {6038, error, "maps-padding", "The padding of MAPS is zero."},
+
     {7001, error, "environment-axes",
      "The first axes of an environment, local or not, are those of §6.1 or, with parameterization 4, §6.6, of at "
      "most 65536 steps; one that is not local has no others."},
@@ -170,6 +179,14 @@ const Rule rules[] = {
      "The axes of a map of portals are unit and at right angles; its unit is positive and finite."},
     {7019, error, "portal-sums",
      "The sums of a map begin with a row and a column of 0, and no cell between them has less than 0."},
+    {7020, error, "indexed-axes",
+     "An indexed environment has the two axes of an environment first, then one to three linear indexed axes of 2 "
+     "to 65536 steps, and as many bins as their product."},
+    {7021, error, "coordinates",
+     "The coordinates of an indexed axis are finite and rise strictly from its `low` to its `high`."},
+    {7022, error, "map",
+     "The shares of maps are positive and add up to 1 within 2^-20; `sun_share` is in [0, 1), and 0 where `sun` or "
+     "`radius` is 0; `radius` is in [0, 1]; the direction of a sun is unit where it has a radius, and else 0."},
 
     {8001, error, "brdf-axes",
      "A BRDF has the axes of §11, cos_theta_h of at most 268435456 steps and the others of at most 65536."},

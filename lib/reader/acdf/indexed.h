@@ -1,0 +1,430 @@
+/* Environments of several maps, as of a day: one tree of halvings with a row of codes for each map (SPEC.md §5.13).
+ * Between maps the pdf is the mixture that is linear in each indexed axis. Valid C99, C++17 and CUDA/HIP/SYCL; no
+ * allocation, no errors.
+ *
+ *   AcdfIndexed day;                                       // of acdf_indexed (acdf/acdf.h)
+ *   AcdfMixed sky;
+ *   acdf_indexed_at(&day, coordinates, &sky);              // once a frame
+ *   AcdfDirectionSample s = acdf_mixed_sample(&sky, u0, u1);
+ *   float p = acdf_mixed_pdf(&sky, s.direction);           // exactly s.pdf
+ *
+ * The random numbers that lead a map to a node are whole numbers, out of 2^31, and so are weights of maps, out of
+ * 2^21. Sums of their products are exact in doubles: every machine descends alike, and the probability of a cell is
+ * the one that samples have. */
+#ifndef ACDF_INDEXED_H
+#define ACDF_INDEXED_H
+
+#include <acdf/cone.h>
+#include <acdf/sample.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { ACDF_MOST_MIXED = 8 };     /* 2^ACDF_MOST_INDEXED_AXES */
+#define ACDF_WEIGHTS 0x1p21       /* of a mixture: the sum of its weights */
+#define ACDF_TOP_TILE 0x80000000u /* a child that is a tile: this and its number */
+
+/* A split at the top of the tree, where each map has a code of its own; split 0 is the root. */
+typedef struct AcdfTopSplit {
+    uint32_t axis;
+    uint32_t child[2]; /* lower and upper half: a later split, or ACDF_TOP_TILE | a tile */
+} AcdfTopSplit;
+
+/* A node at which codes of maps end. All maps share what is below. */
+typedef struct AcdfTopTile {
+    uint32_t node;     /* of the shared tree, or ACDF_LEAF */
+    AcdfSpan steps[2]; /* of that tree's random numbers */
+} AcdfTopTile;
+
+/* What is made when a file is opened: flat words without pointers, offsets in words from the start of this. */
+typedef struct AcdfTop {
+    uint32_t words; /* of all */
+    uint32_t maps, splits;
+    uint32_t nodes;   /* AcdfHalving[]: the shared tree */
+    uint32_t heights; /* double[rows + 1]: acdf_row_z of lat-long grids; 0: there are none */
+    uint32_t top;     /* AcdfTopSplit[splits] */
+    uint32_t tiles;   /* AcdfTopTile[splits + 1] */
+    uint32_t lower;   /* uint32[splits][maps]: the steps, out of 2^31, that lead to the lower half */
+    uint32_t of_tile; /* uint32[splits + 1][maps]: those that lead to a tile */
+} AcdfTop;
+
+/* A checked file of several maps. */
+typedef struct AcdfIndexed {
+    uint32_t columns, rows;
+    uint32_t parameterization; /* ACDF_PARAM_OCTAHEDRAL; all else is ACDF_PARAM_LATLONG */
+    uint32_t axes;             /* indexed ones, 1 to ACDF_MOST_INDEXED_AXES */
+    uint32_t counts[3];        /* of maps along each */
+    uint32_t sun;              /* 0: there is none; else roots of its cone, and one */
+    double total;              /* integral of all maps together */
+    const double* coordinates; /* those of the first axis, then of the next: each ascending */
+    const AcdfMap* maps;       /* row-major, the last axis fastest */
+    const AcdfTop* top;
+} AcdfIndexed;
+
+/* A mixture of up to eight maps, by value: an environment at some coordinates. */
+typedef struct AcdfMixed {
+    const AcdfTop* top;
+    uint32_t columns, rows, parameterization;
+    uint32_t count; /* of maps that are mixed */
+    uint32_t map[ACDF_MOST_MIXED];
+    double weight[ACDF_MOST_MIXED]; /* whole numbers that add up to ACDF_WEIGHTS */
+    double sun_share;               /* of samples in the cone */
+    AcdfCone cone;
+    double total; /* integral over the sphere, linear between maps */
+} AcdfMixed;
+
+#define ACDF_TOP_ARRAY(type, top, offset)                                                                          \
+    ((const type*)(const void*)((const uint32_t*)(const void*)(top) + (offset)))
+
+/* ---- where among the maps ----------------------------------------------------------------------------- */
+
+/* The index before a coordinate, and how far it lies from there to the next. The ends stand for all beyond. */
+ACDF_FN uint32_t acdf_index_before(const double* coordinates, uint32_t count, double at, double* between) {
+    uint32_t low = 0, high = count - 1u;
+    if (!(at > coordinates[0])) return *between = 0.0, 0;
+    if (at >= coordinates[high]) return *between = 1.0, high - 1u;
+    while (high - low > 1u) {
+        const uint32_t middle = (low + high) >> 1;
+        if (at >= coordinates[middle]) low = middle;
+        else high = middle;
+    }
+    *between = (at - coordinates[low]) / (coordinates[low + 1u] - coordinates[low]);
+    return low;
+}
+
+/* The direction of a sun between two, along the great circle; where one is not known, the other. */
+ACDF_FN void acdf_between_suns(const double a[3], const double b[3], double t, double out[3]) {
+    const double cosine = acdf_cone_dot(a, b);
+    double cross[3], sine, angle, of_a, of_b, unused, length;
+    int i;
+    for (i = 0; i < 3; ++i) cross[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+    sine = sqrt(acdf_cone_dot(cross, cross));
+    angle = acdf_atan2pi(sine, cosine);
+    if (sine < 1e-9) { /* alike, or opposite: nothing is between */
+        for (i = 0; i < 3; ++i)
+            out[i] = (acdf_cone_dot(a, a) > 0.0 && (t < 0.5 || !(acdf_cone_dot(b, b) > 0.0))) ? a[i] : b[i];
+        return;
+    }
+    acdf_sincospi((1.0 - t) * angle, &of_a, &unused);
+    acdf_sincospi(t * angle, &of_b, &unused);
+    for (i = 0; i < 3; ++i) out[i] = of_a * a[i] + of_b * b[i];
+    length = sqrt(acdf_cone_dot(out, out));
+    for (i = 0; i < 3; ++i) out[i] /= length;
+}
+
+/* Whole numbers in proportion to weights, none of which becomes 0 unless it is. */
+ACDF_FN void acdf_whole_weights(double* weight, uint32_t count) {
+    double sum = 0.0, left = ACDF_WEIGHTS;
+    uint32_t i, most = 0;
+    for (i = 0; i < count; ++i) {
+        sum += weight[i];
+        if (weight[i] > weight[most]) most = i;
+    }
+    for (i = 0; i < count; ++i) {
+        const double whole = floor(weight[i] / sum * ACDF_WEIGHTS + 0.5);
+        weight[i] = whole < 1.0 ? 1.0 : whole;
+        left -= weight[i];
+    }
+    weight[most] += left;
+}
+
+/* The mixture of the maps around coordinates[axes]. What lies beyond the first or the last is that one; what is not
+ * a number is the first. */
+ACDF_FN void acdf_indexed_at(const AcdfIndexed* file, const double* coordinates, AcdfMixed* out) {
+    double between[3], suns[ACDF_MOST_MIXED][3], radii[ACDF_MOST_MIXED], light = 0.0, in_cone = 0.0;
+    uint32_t first[3], axis, corner, corners = 1u << file->axes, left;
+    const double* of_axis = file->coordinates;
+    out->top = file->top;
+    out->columns = file->columns;
+    out->rows = file->rows;
+    out->parameterization = file->parameterization;
+    out->count = 0;
+    for (axis = 0; axis < file->axes; ++axis) {
+        first[axis] = acdf_index_before(of_axis, file->counts[axis], coordinates[axis], &between[axis]);
+        of_axis += file->counts[axis];
+    }
+    for (corner = 0; corner < corners; ++corner) {
+        double weight = 1.0;
+        uint32_t number = 0;
+        const AcdfMap* map;
+        int i;
+        for (axis = 0; axis < file->axes; ++axis) {
+            const uint32_t upper = corner >> axis & 1u;
+            number = number * file->counts[axis] + first[axis] + upper;
+            weight *= upper ? between[axis] : 1.0 - between[axis];
+        }
+        map = &file->maps[number];
+        radii[corner] = map->radius;
+        for (i = 0; i < 3; ++i) suns[corner][i] = map->sun[i];
+        weight *= map->share;
+        light += weight;
+        in_cone += weight * map->sun_share;
+        if (!(weight * (1.0 - map->sun_share) > 0.0)) continue;
+        out->map[out->count] = number;
+        out->weight[out->count++] = weight * (1.0 - map->sun_share);
+    }
+    acdf_whole_weights(out->weight, out->count);
+    out->total = light * file->total;
+    out->sun_share = in_cone / light;
+    out->cone.reach = 0.0;
+    for (axis = file->axes, left = corners; left > 1u; left >>= 1) { /* the last axis first */
+        const double t = between[--axis];
+        for (corner = 0; corner < left >> 1; ++corner) {
+            const double *a = suns[corner], *b = suns[corner + (left >> 1)];
+            const double of_a = radii[corner], of_b = radii[corner + (left >> 1)];
+            radii[corner] = !(of_a > 0.0) ? of_b : !(of_b > 0.0) ? of_a : of_a + (of_b - of_a) * t;
+            acdf_between_suns(a, b, t, suns[corner]);
+        }
+    }
+    if (out->sun_share > 0.0) acdf_cone_about(suns[0], radii[0], file->sun - 1u, &out->cone);
+}
+
+/* ---- the tree ------------------------------------------------------------------------------------------- */
+
+/* Steps of the maps of a mixture, at an array of one a map: out of 2^52. */
+ACDF_INLINE double acdf_mixed_steps(const AcdfMixed* sky, const uint32_t* of_maps) {
+    double sum = sky->weight[0] * (double)of_maps[sky->map[0]];
+    uint32_t k;
+    for (k = 1; k < sky->count; ++k) sum += sky->weight[k] * (double)of_maps[sky->map[k]];
+    return sum;
+}
+
+ACDF_INLINE double acdf_steps_in(const AcdfSpan steps[2]) {
+    return (double)(steps[0].end[1] - steps[0].end[0]) * (double)(steps[1].end[1] - steps[1].end[0]);
+}
+
+/* The whole of both axes. */
+ACDF_INLINE void acdf_mixed_whole(const AcdfMixed* sky, AcdfSpan box[2]) {
+    box[0].end[0] = box[1].end[0] = 0;
+    box[0].end[1] = sky->columns;
+    box[1].end[1] = sky->rows;
+}
+
+/* The cell that u[2] lead to; u becomes what is left of them in it. Returns its probability. */
+ACDF_INLINE double acdf_mixed_descend(const AcdfMixed* sky, double u[2], AcdfSpan box[2]) {
+    const AcdfTop* top = sky->top;
+    const AcdfTopSplit* splits = ACDF_TOP_ARRAY(AcdfTopSplit, top, top->top);
+    const uint32_t* rows = ACDF_TOP_ARRAY(uint32_t, top, top->lower);
+    uint32_t at = top->splits ? 0 : ACDF_TOP_TILE, number[2];
+    double here = ACDF_WEIGHTS * 0x1p31;
+    AcdfSpan steps[2], whole[2];
+    const AcdfTopTile* tile;
+    int axis;
+    acdf_mixed_whole(sky, box);
+    while (!(at & ACDF_TOP_TILE)) {
+        const AcdfTopSplit split = splits[at];
+        const double lower = acdf_mixed_steps(sky, rows + (size_t)at * top->maps);
+        const double x = u[split.axis] * here;
+        const uint32_t upper = x >= lower && here > lower;
+        box[split.axis].end[1u - upper] = acdf_span_middle(&box[split.axis]);
+        here = upper ? here - lower : lower;
+        u[split.axis] = (upper ? x - lower : x) / here;
+        at = split.child[upper];
+    }
+    tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + (at & ~ACDF_TOP_TILE);
+    if (tile->node == ACDF_LEAF) return here * 0x1p-52;
+    for (axis = 0; axis < 2; ++axis) {
+        const uint32_t low = tile->steps[axis].end[0], wide = tile->steps[axis].end[1] - low;
+        const uint32_t step = (uint32_t)(u[axis] * (double)wide);
+        steps[axis] = whole[axis] = tile->steps[axis];
+        number[axis] = low + (step < wide ? step : wide - 1u);
+    }
+    acdf_halvings_sample(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile->node, number, steps, box);
+    for (axis = 0; axis < 2; ++axis) {
+        const double wide = (double)(whole[axis].end[1] - whole[axis].end[0]);
+        const double t = (u[axis] * wide - (double)(steps[axis].end[0] - whole[axis].end[0])) /
+                         (double)(steps[axis].end[1] - steps[axis].end[0]);
+        u[axis] = acdf_clamp(t, 0.0, 1.0);
+    }
+    return here * 0x1p-52 * (acdf_steps_in(steps) / acdf_steps_in(whole));
+}
+
+/* The cell that holds a grid step of each axis. Returns its probability. */
+ACDF_INLINE double acdf_mixed_cell(const AcdfMixed* sky, const uint32_t position[2], AcdfSpan box[2]) {
+    const AcdfTop* top = sky->top;
+    const AcdfTopSplit* splits = ACDF_TOP_ARRAY(AcdfTopSplit, top, top->top);
+    uint32_t at = top->splits ? 0 : ACDF_TOP_TILE;
+    AcdfSpan steps[2];
+    const AcdfTopTile* tile;
+    double here;
+    acdf_mixed_whole(sky, box);
+    while (!(at & ACDF_TOP_TILE)) {
+        const AcdfTopSplit split = splits[at];
+        const uint32_t middle = acdf_span_middle(&box[split.axis]), upper = position[split.axis] >= middle;
+        box[split.axis].end[1u - upper] = middle;
+        at = split.child[upper];
+    }
+    at &= ~ACDF_TOP_TILE;
+    tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + at;
+    here = acdf_mixed_steps(sky, ACDF_TOP_ARRAY(uint32_t, top, top->of_tile) + (size_t)at * top->maps);
+    if (tile->node == ACDF_LEAF || !(here > 0.0)) return here * 0x1p-52;
+    steps[0] = tile->steps[0];
+    steps[1] = tile->steps[1];
+    acdf_halvings_find(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile->node, position, steps, box);
+    return here * 0x1p-52 * (acdf_steps_in(steps) / acdf_steps_in(tile->steps));
+}
+
+/* The pdf of the tree in a cell, sr^-1. */
+ACDF_INLINE double acdf_mixed_cell_pdf(const AcdfMixed* sky, const AcdfSpan box[2], double p) {
+    double height;
+    if (!(p > 0.0)) return 0.0;
+    if (sky->parameterization == ACDF_PARAM_OCTAHEDRAL)
+        height = 2.0 * (double)(box[1].end[1] - box[1].end[0]) / (double)sky->rows;
+    else {
+        const double* heights = ACDF_TOP_ARRAY(double, sky->top, sky->top->heights);
+        height = heights[box[1].end[0]] - heights[box[1].end[1]];
+    }
+    return p * (double)sky->columns / (2.0 * ACDF_PI * (double)(box[0].end[1] - box[0].end[0]) * height);
+}
+
+/* ---- samples and pdfs ----------------------------------------------------------------------------------- */
+
+/* The pdf of both parts, and the place in the cone. */
+ACDF_INLINE float acdf_mixed_both(const AcdfMixed* sky, const float direction[3], double of_tree, double* in_cone) {
+    double pdf = (1.0 - sky->sun_share) * of_tree;
+    *in_cone = 0.0;
+    if (sky->cone.reach > 0.0) {
+        *in_cone = sky->sun_share * acdf_cone_pdf(&sky->cone, acdf_cone_place(&sky->cone, direction));
+        pdf += *in_cone;
+    }
+    if (pdf >= 3.402823466e38) return 3.402823466e38f;
+    return pdf > 1.17549435e-38 ? (float)pdf : pdf > 0.0 ? 1.17549435e-38f : 0.0f;
+}
+
+/* The cell that holds a direction, in doubles: right at borders, too. Returns its pdf; below 0 for directions that
+ * have none. */
+ACDF_OUTLINE double acdf_mixed_at_border(const AcdfMixed* sky, const float direction[3], AcdfSpan box[2]) {
+    AcdfGrid grid;
+    uint32_t square[2];
+    double position[2];
+    grid.columns = sky->columns;
+    grid.rows = sky->rows;
+    grid.parameterization = sky->parameterization;
+    if (!acdf_grid_square(&grid, direction, square, position)) return -1.0;
+    return acdf_mixed_cell_pdf(sky, box, acdf_mixed_cell(sky, square, box));
+}
+
+/* The pdf in sr^-1 with which acdf_mixed_sample returns a direction: exactly the sample's. 0 where no sample falls,
+ * and for directions that are NaN or not of unit length. */
+ACDF_INLINE float acdf_mixed_pdf(const AcdfMixed* sky, const float direction[3]) {
+    float position[2], error[2];
+    double of_tree = -1.0, unused;
+    AcdfSpan box[2];
+    if (sky->parameterization != ACDF_PARAM_OCTAHEDRAL &&
+        acdf_sphere_nearly(sky->columns, sky->rows, direction, position, error)) {
+        uint32_t square[2];
+        double p;
+        square[0] = (uint32_t)position[0] < sky->columns ? (uint32_t)position[0] : sky->columns - 1u;
+        square[1] = (uint32_t)position[1] < sky->rows ? (uint32_t)position[1] : sky->rows - 1u;
+        p = acdf_mixed_cell(sky, square, box);
+        if (acdf_is_surely_in(position, error, box[0].end[0], box[0].end[1], box[1].end[0], box[1].end[1]))
+            of_tree = acdf_mixed_cell_pdf(sky, box, p);
+    }
+    if (of_tree < 0.0) of_tree = acdf_mixed_at_border(sky, direction, box);
+    return of_tree < 0.0 ? 0.0f : acdf_mixed_both(sky, direction, of_tree, &unused);
+}
+
+/* Samples a direction; u0 and u1 in [0, 1]. Values outside are clamped, NaN counts as 0. */
+ACDF_INLINE AcdfDirectionSample acdf_mixed_sample(const AcdfMixed* sky, double u0, double u1) {
+    double u[2], p, unused;
+    AcdfDirectionSample out;
+    AcdfRange range[2];
+    AcdfSpan box[2];
+    u[0] = acdf_unit_interval(u0);
+    u[1] = acdf_unit_interval(u1);
+    if (u[1] < sky->sun_share) {
+        u[1] /= sky->sun_share;
+        acdf_cone_sample(&sky->cone, u, out.direction);
+        out.pdf = acdf_mixed_pdf(sky, out.direction);
+        return out;
+    }
+    u[1] = (u[1] - sky->sun_share) / (1.0 - sky->sun_share);
+    p = acdf_mixed_descend(sky, u, box);
+    acdf_halved_ranges(box, range);
+    if (sky->parameterization != ACDF_PARAM_OCTAHEDRAL) {
+        const double* heights = ACDF_TOP_ARRAY(double, sky->top, sky->top->heights);
+        out =
+            acdf_sphere_position_between(sky->columns, range, u, p, heights[range[1].low], heights[range[1].high]);
+    } else {
+        AcdfGrid grid;
+        grid.columns = sky->columns;
+        grid.rows = sky->rows;
+        grid.parameterization = sky->parameterization;
+        out = acdf_grid_position(&grid, range, u, p);
+    }
+    out.pdf = acdf_mixed_both(sky, out.direction, acdf_mixed_cell_pdf(sky, box, p), &unused);
+    return out;
+}
+
+/* Where on the axes of random numbers a cell lies: the descent to a box, by its lowest step. */
+ACDF_FN void acdf_mixed_strata(const AcdfMixed* sky, const uint32_t position[2], AcdfStratum strata[2]) {
+    const AcdfTop* top = sky->top;
+    const AcdfTopSplit* splits = ACDF_TOP_ARRAY(AcdfTopSplit, top, top->top);
+    const uint32_t* rows = ACDF_TOP_ARRAY(uint32_t, top, top->lower);
+    uint32_t at = top->splits ? 0 : ACDF_TOP_TILE;
+    double here = ACDF_WEIGHTS * 0x1p31;
+    const AcdfTopTile* tile;
+    AcdfSpan box[2], steps[2];
+    int axis;
+    acdf_mixed_whole(sky, box);
+    for (axis = 0; axis < 2; ++axis) strata[axis].low = 0.0, strata[axis].width = 1.0;
+    while (!(at & ACDF_TOP_TILE)) {
+        const AcdfTopSplit split = splits[at];
+        const uint32_t middle = acdf_span_middle(&box[split.axis]), upper = position[split.axis] >= middle;
+        const double lower = acdf_mixed_steps(sky, rows + (size_t)at * top->maps),
+                     of_half = upper ? here - lower : lower;
+        AcdfStratum* stratum = &strata[split.axis];
+        if (upper) stratum->low += stratum->width * (lower / here);
+        stratum->width *= of_half / here;
+        box[split.axis].end[1u - upper] = middle;
+        here = of_half;
+        at = split.child[upper];
+    }
+    tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + (at & ~ACDF_TOP_TILE);
+    if (tile->node == ACDF_LEAF) return;
+    steps[0] = tile->steps[0];
+    steps[1] = tile->steps[1];
+    acdf_halvings_find(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile->node, position, steps, box);
+    for (axis = 0; axis < 2; ++axis) {
+        const double wide = (double)(tile->steps[axis].end[1] - tile->steps[axis].end[0]);
+        strata[axis].low += strata[axis].width * ((double)(steps[axis].end[0] - tile->steps[axis].end[0]) / wide);
+        strata[axis].width *= (double)(steps[axis].end[1] - steps[axis].end[0]) / wide;
+    }
+}
+
+/* Random numbers u[2] for which acdf_mixed_sample returns `direction`: in the cone those of the part that samples
+ * it more often. Returns 1, or 0 (and u unset) where the pdf is 0. */
+ACDF_FN int acdf_mixed_invert(const AcdfMixed* sky, const float direction[3], double u[2]) {
+    AcdfSpan box[2];
+    AcdfRange range[2];
+    AcdfStratum strata[2];
+    AcdfGrid grid;
+    uint32_t square[2], lowest[2];
+    double position[2], t[2], in_cone, of_tree;
+    int axis;
+    of_tree = acdf_mixed_at_border(sky, direction, box);
+    if (of_tree < 0.0 || !(acdf_mixed_both(sky, direction, of_tree, &in_cone) > 0.0f)) return 0;
+    if (in_cone > (1.0 - sky->sun_share) * of_tree) {
+        acdf_cone_invert(&sky->cone, direction, acdf_cone_place(&sky->cone, direction), u);
+        u[1] *= sky->sun_share;
+        return 1;
+    }
+    grid.columns = sky->columns;
+    grid.rows = sky->rows;
+    grid.parameterization = sky->parameterization;
+    acdf_grid_square(&grid, direction, square, position);
+    acdf_halved_ranges(box, range);
+    acdf_grid_fractions(&grid, direction, position, range, t);
+    for (axis = 0; axis < 2; ++axis) lowest[axis] = range[axis].low;
+    acdf_mixed_strata(sky, lowest, strata);
+    for (axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t[axis]);
+    u[1] = sky->sun_share + (1.0 - sky->sun_share) * u[1];
+    if (u[1] > 1.0) u[1] = 1.0;
+    return 1;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
