@@ -18,6 +18,7 @@
 #include "tools/cli/target_memory.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
+#include "tools/indexed.h"
 
 #include <CLI/CLI.hpp>
 
@@ -43,9 +44,14 @@ public:
     void add_options(CLI::App& command) override;
     void check() override;
     std::vector<std::string*> files() override;
-    std::string option_text() const override { return builder::option_text(with_source()); }
+    std::string option_text() const override {
+        return maps_.any() ? build::option_text(maps_.options(input_, environment_.target, environment_.goal.budget,
+                                                              environment_.codec))
+                           : builder::option_text(with_source());
+    }
     std::uint64_t memory() const override;
     const input::ProbeOptions* reading() const override { return &input_; }
+    bool takes_all(const std::vector<std::string>& sources) override;
     Converted convert(const Listener& listener) override;
 
 private:
@@ -64,6 +70,7 @@ private:
     builder::EnvironmentOptions environment_;
     std::string knots_, budget_;
     SceneOption scene_;
+    MapOptions maps_;
     const CLI::App* command_ = nullptr;
 };
 
@@ -109,7 +116,24 @@ void EnvConversion::set_knots() {
     }
 }
 
-std::vector<std::string*> EnvConversion::files() { return scene_.files(source); }
+std::vector<std::string*> EnvConversion::files() {
+    std::vector<std::string*> out = scene_.files(source);
+    for (std::size_t i = 1; i < maps_.files().size(); ++i) out.push_back(&maps_.files()[i]);
+    return out;
+}
+
+bool EnvConversion::takes_all(const std::vector<std::string>& sources) {
+    if (!maps_.given(sources)) {
+        for (const char* option : {"--sun", "--no-sun"})
+            if (given(option)) throw CLI::ValidationError(option, "is for several maps in one file (--axis)");
+        return false;
+    }
+    for (const char* option :
+         {"--cells", "--target-variance", "--max-weight", "--fit", "--mis", "--scene", "--faces"})
+        if (given(option)) throw CLI::ValidationError(option, "is for a file of one map, without --axis");
+    maps_.take(sources);
+    return true;
+}
 
 void EnvConversion::use_renderers_partner() {
     if (!renderer_) return;
@@ -210,6 +234,8 @@ std::uint64_t EnvConversion::memory() const {
 }
 
 Converted EnvConversion::convert(const Listener& listener) {
+    if (maps_.any())
+        return maps_.convert(input_, environment_.target, environment_.goal.budget, environment_.codec, listener);
     const ProbeTarget loaded = load_target(source, input_, environment_.target, listener.note);
     if (renderer_) scene_.note_axes(*command_, *renderer_, loaded.probe.source_map.layout, listener.note);
     if (for_partner_) listener.note(partner_text(*renderer_, environment_.mis));
@@ -308,6 +334,7 @@ void EnvConversion::add_options(CLI::App& command) {
                "(.txt, x y z [weight] a line)",
                "MIS partner");
     scene_.add_axes(command, "MIS partner");
+    maps_.add(command);
     add_target_options(command, environment_.target);
     add_codec(command, environment_.codec);
 }
@@ -322,12 +349,14 @@ void add_env(CLI::App& program, int& exit_code) {
         command, env_conversion(),
         {"PROBE", ".acdf",
          "The environment map: any image OpenImageIO reads, or the six faces of a cube (--faces). Several become a "
-         "file each",
+         "file each, or one together (--axis; sky.####.exr)",
          help_footer("Prints the size and the exact relative variance of the stored pdf: an estimate of n samples "
                      "has 1/n of this variance. By default the file has the least noise in 64 KiB.",
                      "acdf env probe.exr\n"
                      "acdf env probe.hdr -o probe.acdf --budget 16KiB\n"
                      "acdf env noon.exr dusk.exr -o skies/\n"
+                     "acdf env day.####.exr -o day.acdf\n"
+                     "acdf env morning.exr noon.exr evening.exr -o day.acdf --axis time=8,12,18\n"
                      "acdf env probe.hdr -o probe.acdf --target-variance 0.01 --compress zlib\n"
                      "acdf env grace_probe.hdr --projection angular -o grace.acdf\n"
                      "acdf env sky_{px,nx,py,ny,pz,nz}.hdr --faces directx -o sky.acdf\n"

@@ -48,8 +48,31 @@ std::uint64_t count_grids(const File& file) {
 
 bool is_fast(const File& file) { return file.kind() == ACDF_KIND_LOCAL && file.local().data().fast.grid; }
 
+/// All that are halved: splits of all maps, and what maps share below.
+std::uint64_t halving_count(const File& file) {
+    const AcdfIndexed data = file.indexed().data();
+    std::uint64_t halvings = 0;
+    const auto* tiles = ACDF_TOP_ARRAY(AcdfTopTile, data.top, data.top->tiles);
+    const auto* nodes = ACDF_TOP_ARRAY(AcdfHalving, data.top, data.top->nodes);
+    for (std::uint32_t tile = 0; tile <= data.top->splits; ++tile) {
+        std::vector<std::uint32_t> open;
+        if (tiles[tile].node != ACDF_LEAF) open.push_back(tiles[tile].node);
+        for (; !open.empty(); ++halvings) {
+            const std::uint32_t at = open.back(), link = nodes[at].link;
+            open.pop_back();
+            if (!(link >> 3 & 1u)) open.push_back(at + 1);
+            if (!(link >> 4 & 1u)) open.push_back(at + (link >> 5));
+        }
+    }
+    return halvings + data.top->splits;
+}
+
 TreeCounts count_tree(const File& file) {
     TreeCounts counts;
+    if (file.kind() == ACDF_KIND_INDEXED) {
+        counts.cells = halving_count(file) + 1;
+        return counts;
+    }
     if (!file.has_bins()) {
         counts.cells = file.environment().data().halved->count + 1;
         return counts;
@@ -166,6 +189,23 @@ Json local_json(const File& file) {
     return report;
 }
 
+/// What the maps of an indexed environment have.
+Json maps_json(const File& file) {
+    const AcdfIndexed data = file.indexed().data();
+    std::uint64_t suns = 0;
+    for (std::uint32_t i = 0; i < data.top->maps; ++i) suns += data.maps[i].sun_share > 0.0f;
+    Json report;
+    report["count"] = data.top->maps;
+    report["splits"] = data.top->splits;
+    report["suns"] = suns;
+    Json axes = Json::object();
+    const double* at = data.coordinates;
+    for (std::uint32_t axis = 0; axis < data.axes; at += data.counts[axis++])
+        axes[axis_name(file.axis(2 + axis))] = std::vector<double>(at, at + data.counts[axis]);
+    report["coordinates"] = axes;
+    return report;
+}
+
 /// What a file is not to be used without.
 Json partner_json(const File& file) {
     const AcdfPartner& partner = *file.partner();
@@ -200,6 +240,7 @@ Json describe(const std::string& path, const File& file) {
     report["cells"] = counts.cells;
     report["curves"] = counts.curves;
     if (header.kind == ACDF_KIND_LOCAL) report["local"] = local_json(file);
+    if (header.kind == ACDF_KIND_INDEXED) report["maps"] = maps_json(file);
     if (file.partner()) report["partner"] = partner_json(file);
     report["axes"] = axes_json(file);
     report["fit"] = build::fit_name(description.fit);
@@ -302,6 +343,9 @@ void print(const Json& report) {
                                                                        " are tables made when it is opened"
                                                                  : ""));
     if (report.contains("local")) line("normals", local_text(report["local"]));
+    if (report.contains("maps"))
+        line("maps", text_of(report["maps"]["count"]) + ", " + text_of(report["maps"]["suns"]) + " with a sun; " +
+                         text_of(report["maps"]["splits"]) + " splits have a code of each");
     if (report.contains("partner")) line("partner", partner_line(report["partner"]));
     line("source", source_text(report["source"]));
     line("made by", text_of(report["tool"]));

@@ -1,4 +1,5 @@
 // acdf pdf: pdfs of given directions.
+#include "tools/cli/coordinates.h"
 #include "tools/cli/directions_csv.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
@@ -23,7 +24,7 @@ struct PdfArguments {
     std::string file;
     std::string directions = "-";
     std::string output = "-";
-    std::vector<std::uint32_t> at;
+    std::vector<std::string> at;
     std::vector<float> normal;
     bool normalize = false, csv = false, force = false;
     std::string view;
@@ -83,6 +84,14 @@ void evaluate_environment(const File& file, std::istream& in, const PdfArguments
     if (options.csv) output.write("x,y,z,pdf\n");
     evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
         return pdf_line(direction, options, [&](const float d[3]) { return view.pdf(d); });
+    });
+}
+
+void evaluate_indexed(const File& file, std::istream& in, const PdfArguments& options, Output& output) {
+    const MixedEnvironment view = chosen_environment(options.file, file, options.at);
+    if (options.csv) output.write("x,y,z,pdf\n");
+    evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
+        return density_line(direction, options, [&](const float d[3]) { return view.pdf(d); });
     });
 }
 
@@ -149,6 +158,7 @@ void run(const PdfArguments& options) {
     if (kind == ACDF_KIND_ENVIRONMENT) evaluate_environment(loaded.file, in, options, output);
     else if (kind == ACDF_KIND_LOCAL) evaluate_local(loaded.file, in, options, output);
     else if (kind == ACDF_KIND_BRDF) evaluate_brdf(loaded.file, in, options, output);
+    else if (kind == ACDF_KIND_INDEXED) evaluate_indexed(loaded.file, in, options, output);
     else if (kind == ACDF_KIND_TABLE) evaluate_table(loaded.file, in, options, output);
     output.commit();
 }

@@ -1,6 +1,7 @@
 // acdf sample: directions sampled from a file, as CSV.
 #include "measure/sequences.h"
 #include "tools/cli/choice.h"
+#include "tools/cli/coordinates.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/messages.h"
@@ -26,7 +27,7 @@ struct SampleArguments {
     std::uint64_t count = 0;
     std::optional<std::uint64_t> seed;
     measure::SequenceKind sequence = measure::SequenceKind::random;
-    std::vector<std::uint32_t> at;
+    std::vector<std::string> at;
     std::vector<float> normal;
     std::string output = "-";
     bool force = false, quiet = false;
@@ -78,6 +79,13 @@ using Numbers = const double (*)[2];
 void sample_environment(const File& file, const SampleArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": an environment has no bins; leave out --at");
     const EnvironmentView view = file.environment();
+    write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
+        for (std::size_t i = 0; i < count; ++i) samples[i] = view.sample(u[i][0], u[i][1]);
+    });
+}
+
+void sample_indexed(const File& file, const SampleArguments& options, Output& output) {
+    const MixedEnvironment view = chosen_environment(options.file, file, options.at);
     write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
         for (std::size_t i = 0; i < count; ++i) samples[i] = view.sample(u[i][0], u[i][1]);
     });
@@ -140,6 +148,7 @@ void run(const SampleArguments& options) {
     if (kind == ACDF_KIND_ENVIRONMENT) sample_environment(loaded.file, options, output);
     else if (kind == ACDF_KIND_LOCAL) sample_local(loaded.file, options, output);
     else if (kind == ACDF_KIND_BRDF) sample_brdf(loaded.file, options, output);
+    else if (kind == ACDF_KIND_INDEXED) sample_indexed(loaded.file, options, output);
     else if (kind == ACDF_KIND_TABLE) sample_table(loaded.file, options, output);
     output.commit();
 }

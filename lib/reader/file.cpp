@@ -163,7 +163,7 @@ bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
     take_parts(parts, file);
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (file.kind() == ACDF_KIND_INDEXED) {
-        file.indexed = make_indexed(parts, options.allocator, file.memory[2]);
+        file.indexed = make_indexed(parts, options.tables, options.allocator, file.memory[2]);
         if (!file.indexed.top) return fail(status, 1003, "%llu halvings", ull{parts.halving_count});
         file.table_bytes = 4 * u64{file.indexed.top->words};
         return true;

@@ -115,6 +115,11 @@ void add_conversion(CLI::App& command, std::shared_ptr<Conversion> conversion, c
     command.footer(help.footer);
     command.callback([conversion, options, suffix = std::string(help.suffix), &exit_code] {
         if (const auto* reading = conversion->reading(); reading && reading->faces) join_faces(*options);
+        if (conversion->takes_all(options->sources)) {
+            if (options->output.empty())
+                throw CLI::ValidationError("--output", "is needed where several maps become one file");
+            options->sources.resize(1);
+        }
         exit_code = run(*conversion, *options, suffix);
     });
 }

@@ -2,12 +2,22 @@
 
 #include "tools/commands.h"
 
+#include <charconv>
 #include <cstdio>
+#include <system_error>
 
 namespace acdf::tools {
 
 std::vector<std::uint32_t> chosen_bin(const std::string& path, const TableView& view,
-                                      const std::vector<std::uint32_t>& at) {
+                                      const std::vector<std::string>& words) {
+    std::vector<std::uint32_t> at;
+    for (const std::string& word : words) {
+        std::uint32_t index = 0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
+        if (error != std::errc() || end != word.data() + word.size())
+            throw CLI::ValidationError("--at", "'" + word + "' is no index of a table's axis");
+        at.push_back(index);
+    }
     const std::uint32_t n = view.indexed_count();
     if (at.size() != n)
         throw Failure(

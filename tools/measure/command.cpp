@@ -1,7 +1,10 @@
 // acdf measure: how accurate a file is, by summation over its source.
 #include "build/accuracy/environment.h"
 #include "build/brdf.h"
+#include "build/indexed/accuracy.h"
 #include "measure/samplers/full_cdf.h"
+#include "tools/cli/comma_list.h"
+#include "tools/cli/coordinates.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
@@ -37,6 +40,7 @@ struct MeasureArguments {
     input::ProbeOptions input;
     std::uint32_t normals = 256, views = build::kMeasuredViews, points = 64;
     std::string mesh;
+    std::vector<std::string> at;
     input::UpAxis up = input::UpAxis::z;
     const CLI::App* command = nullptr;
     std::optional<AcdfFilter> filter;
@@ -116,8 +120,45 @@ void refuse_options_of_other_kinds(const MeasureArguments& options, AcdfKind kin
     if (kind != ACDF_KIND_LOCAL) refuse({"--baselines", "--normals", "--scene"}, "local environments");
     if (kind != ACDF_KIND_TABLE) refuse({"--mis"}, "tables");
     if (kind != ACDF_KIND_BRDF) refuse({"--views"}, "BRDFs");
+    if (kind != ACDF_KIND_INDEXED) refuse({"--at"}, "several maps");
     if (kind == ACDF_KIND_TABLE || kind == ACDF_KIND_BRDF)
         refuse({"--projection", "--bad-pixels", "--on-black", "--filter"}, "environments");
+}
+
+/// The map is looked up by its filter, and texel by texel where the sun is.
+void measure_indexed(const MeasureArguments& options, const File& file) {
+    const MixedEnvironment sky = chosen_environment(options.file, file, options.at);
+    const auto read = [&](std::optional<AcdfFilter> filter, bool quiet) {
+        return source_target(options.file, file, options.source, options.input, quiet, filter);
+    };
+    const ProbeTarget source = read(options.filter, true), texels = read(ACDF_FILTER_NEAREST, true);
+    const AcdfFilter filter = options.filter.value_or(static_cast<AcdfFilter>(file.description().filter));
+    const build::IndexedAccuracy a =
+        build::measure_mixed(sky, {&builder::grid_of(source.target), &builder::grid_of(texels.target), filter});
+    if (options.json) {
+        const nlohmann::ordered_json out = {{"file", options.file},
+                                            {"source", options.source},
+                                            {"relative_variance", a.relative_variance},
+                                            {"noise_percent", noise_json(a.relative_variance)},
+                                            {"max_weight", a.max_weight},
+                                            {"support_violations", a.support_violations},
+                                            {"sun_share", sky.sun_share()},
+                                            {"bytes", file.size()},
+                                            {"memory_bytes", measure::memory_of(file)},
+                                            {"bins", file.description().bin_count},
+                                            {"total", a.total},
+                                            {"total_stored", sky.total()}};
+        std::fputs(json_text(out).c_str(), stdout);
+        return;
+    }
+    std::printf("%s against %s\n", printable(options.file).c_str(), printable(options.source).c_str());
+    std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
+    std::printf("    noise                %s   at 16, 64, 256 samples; of the light's sum, not of a surface\n",
+                noise_texts(a.relative_variance).c_str());
+    std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);
+    std::printf("  support violations     %" PRIu64 "\n", a.support_violations);
+    std::printf("  share of the sun       %.6g   of samples\n", sky.sun_share());
+    print_bytes(file);
 }
 
 void run(const MeasureArguments& options) {
@@ -137,6 +178,8 @@ void run(const MeasureArguments& options) {
         return measure_local(loaded.file, {options.file, options.source, options.input, options.normals,
                                            options.mesh, options.up, options.points, options.baselines,
                                            options.json, options.quiet, options.filter});
+    case ACDF_KIND_INDEXED:
+        return measure_indexed(options, loaded.file);
     default:
         break;
     }
@@ -194,6 +237,10 @@ void add_measure(CLI::App& program, int& exit_code) {
         "file for nearest lookups may be biased under a bilinear one, which is an error")
         ->option_text("NAME [as the file was made]")
         ->group("Input");
+    comma_separated(command.add_option("--at", options->at,
+                                       "Of several maps in one file: where among them, at a map or between"))
+        ->option_text("NAME=V,...")
+        ->group("Input");
     command
         .add_option("--normals", options->normals, "Of a local environment: random normals to take the mean over")
         ->check(CLI::Range(1u, 1u << 20))
@@ -229,6 +276,7 @@ void add_measure(CLI::App& program, int& exit_code) {
                     "other than the file's own is reported on stderr, and is an error where it has light and the "
                     "pdf is 0. The file's own source is read with the --projection that the file was made with.",
                     "acdf measure probe.acdf --against probe.exr\n"
+                    "acdf measure day.acdf --against noon.exr --at time=12\n"
                     "acdf measure probe.acdf --against probe.exr --json | jq .relative_variance"));
     command.callback([options, &exit_code] {
         run(*options);

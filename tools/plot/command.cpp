@@ -110,7 +110,7 @@ images::Picture coloured(const Drawing& drawing, const PdfRange& range) {
 
 /// One picture, or one for each of panel_normals.
 std::vector<Drawing> draw_all(const PlotArguments& options, const Plotted& source) {
-    const bool with_knots = options.knots && !source.stored.file.empty();
+    const bool with_knots = options.knots && !source.stored.file.empty() && !source.indexed;
     std::vector<Drawing> out;
     if (!source.panels) {
         out.push_back(draw(options, source, with_knots));
@@ -286,6 +286,10 @@ void add_plot(CLI::App& program, int& exit_code) {
         ->group("Input");
     add_normal(command, options->normal, "Input",
                "; the white line is its horizon. Without it the six axes are shown");
+    comma_separated(command.add_option("--at", options->at,
+                                       "Of several maps in one file: where among them, at a map or between"))
+        ->option_text("NAME=V,...")
+        ->group("Input");
     comma_separated(
         command.add_option("--position", options->position,
                            "For a file that stores visibility cells (acdf local --visibility), the position in its "
@@ -309,6 +313,7 @@ void add_plot(CLI::App& program, int& exit_code) {
         "acdf plot room.acdf -o floor.png --position 0.5,1,0 --normal 0,0,1\n"
         "acdf plot room.acdf -o cells.png --scene room.obj --from 4,-6,3 --to 0,0,1\n"
         "acdf plot nickel.acdf -o lobe.png --view 60\n"
+        "acdf plot day.acdf -o morning.png --at time=9.5\n"
         "acdf plot sky.acdf -o pdf.exr --width 4096"));
     command.callback([options, &command, &exit_code] {
         if (options->output.empty()) options->output = output_names({options->file}, "", ".png")[0];

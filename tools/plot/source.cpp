@@ -2,6 +2,7 @@
 
 #include "build/text/format_names.h"
 #include "input/file_name.h"
+#include "tools/cli/coordinates.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/normal_option.h"
 #include "tools/cli/probe_source.h"
@@ -114,10 +115,24 @@ void load_local(const PlotArguments& options, Plotted& source) {
 /// Options that have no say for a kind of file; ACDF_KIND_ENVIRONMENT: or for a probe.
 void refuse_options_of_other_kinds(const PlotArguments& options, AcdfKind kind) {
     if (kind != ACDF_KIND_BRDF && !options.view.empty()) throw CLI::ValidationError("--view", "is for BRDF files");
+    if (kind != ACDF_KIND_INDEXED && !options.at.empty())
+        throw CLI::ValidationError("--at", "is for environments of several maps");
     if (kind == ACDF_KIND_LOCAL) return;
     if (!options.position.empty())
         throw CLI::ValidationError("--position", "is for local environments with visibility cells");
     refuse_normal(options.file, options.normal);
+}
+
+void load_indexed(const PlotArguments& options, Plotted& source) {
+    const File& file = source.stored.file;
+    const MixedEnvironment view = chosen_environment(options.file, file, options.at);
+    source.density = [view](const float direction[3]) { return view.pdf(direction); };
+    source.indexed = true;
+    source.columns = file.axis(ACDF_AXIS_PHI).resolution;
+    source.rows = file.axis(ACDF_AXIS_THETA).resolution;
+    source.title = {shown_name(options.file)};
+    source.title.insert(source.title.end(), options.at.begin(), options.at.end());
+    source.title.push_back(to_readable_size(file.size()));
 }
 
 void load_stored(const PlotArguments& options, Plotted& source) {
@@ -127,6 +142,7 @@ void load_stored(const PlotArguments& options, Plotted& source) {
     refuse_options_of_other_kinds(options, source.stored.file.kind());
     if (source.stored.file.kind() == ACDF_KIND_BRDF) return load_brdf(options, source);
     if (source.stored.file.kind() == ACDF_KIND_LOCAL) return load_local(options, source);
+    if (source.stored.file.kind() == ACDF_KIND_INDEXED) return load_indexed(options, source);
     if (source.stored.file.kind() != ACDF_KIND_ENVIRONMENT)
         fail_kind(options.file, source.stored.file, "plot",
                   "environments and BRDFs, as `acdf env` and `acdf brdf` make them");

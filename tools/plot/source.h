@@ -23,6 +23,7 @@ struct PlotArguments {
     std::string file, output, range, view;
     std::vector<float> normal, position;
     std::string mesh; // the cells over it are shown, not a pdf
+    std::vector<std::string> at; // where among several maps
     input::UpAxis up = input::UpAxis::z;
     std::vector<double> from, to; // the camera
     input::ProbeOptions input;
@@ -39,6 +40,7 @@ struct Plotted {
     std::uint32_t columns = 0, rows = 0;
     std::optional<PlottedView> brdf;    // of a BRDF file
     std::optional<PlottedNormal> local; // of a local environment file
+    bool indexed = false;               // of several maps: without borders of cells
     bool panels = false;                // of a local environment file for several normals
     std::vector<std::string> title;
 };

@@ -36,8 +36,7 @@ public:
             if (!(f > 0.0)) continue;
             const std::uint32_t position[2] = {column, row};
             AcdfSpan box[2];
-            const double p = acdf_mixed_cell(&sky_, position, box);
-            const double of_tree = (1.0 - sky_.sun_share) * acdf_mixed_cell_pdf(&sky_, box, p);
+            const double of_tree = (1.0 - sky_.sun_share) * acdf_mixed_cell(&sky_, position, box);
             float d[3];
             grid_direction(target_, column + 0.5, row + 0.5, d);
             const double cosine = d[0] * sky_.cone.axis[0] + d[1] * sky_.cone.axis[1] + d[2] * sky_.cone.axis[2];

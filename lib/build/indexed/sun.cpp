@@ -19,6 +19,7 @@ constexpr double kDegree = ACDF_PI / 180.0;
 constexpr std::uint32_t kSunParts = 4; // of a texel along each axis, where the cone is fitted
 constexpr std::uint32_t kMostRoots = ACDF_MOST_SUN - 1;
 constexpr double kRadiusStep = 1.08;     // of the radii that are tried
+constexpr int kNear = 3;                 // maps on both sides whose suns count for a radius
 constexpr double kStill = 0.1 * kDegree; // what moves less between maps stands still
 
 double angle_between(const SunDirection& a, const SunDirection& b) {
@@ -191,14 +192,28 @@ double moment_about(const Found& sun, double off, double radius, std::uint32_t r
     return 0.5 * moment;
 }
 
-/// The best radius of a profile; its moment.
-std::pair<double, double> best_radius(const Found& sun, double off, std::uint32_t roots) {
-    std::pair<double, double> best{0.0, std::numeric_limits<double>::infinity()};
-    for (double radius = 0.4 * sun.reach; radius < std::min(2.5 * sun.reach, 0.5); radius *= kRadiusStep) {
-        const double moment = moment_about(sun, off, radius, roots);
-        if (moment < best.second) best = {radius, moment};
+/// What cones of several radii and profiles leave of a sun.
+struct Fits {
+    std::vector<std::array<double, kMostRoots + 1>> of_radius;
+
+    Fits(const Found& sun, double off, const std::vector<double>& radii) : of_radius(radii.size()) {
+        for (std::size_t i = 0; i < radii.size(); ++i)
+            for (std::uint32_t roots = 0; roots <= kMostRoots; ++roots)
+                of_radius[i][roots] = moment_about(sun, off, radii[i], roots);
     }
-    return best;
+};
+
+std::vector<double> radii_for(const std::vector<std::optional<Found>>& found) {
+    double least = 1.0, most = 0.0;
+    for (const auto& sun : found) {
+        if (!sun) continue;
+        least = std::min(least, sun->reach);
+        most = std::max(most, sun->reach);
+    }
+    std::vector<double> out;
+    for (double radius = 0.4 * least; radius < std::min(2.5 * most, 0.5); radius *= kRadiusStep)
+        out.push_back(radius);
+    return out;
 }
 
 /// Maps that follow each other along an axis.
@@ -268,6 +283,25 @@ void add_hidden(std::vector<AcdfMap>& maps, const std::vector<std::uint32_t>& co
     }
 }
 
+/// What cones leave of the suns of a map and of those near it: between maps the sun lies otherwise among the texels
+/// than in any of them.
+Fits fits_about(const std::vector<std::optional<Fits>>& fits, const std::vector<AcdfMap>& suns,
+                const std::vector<std::uint32_t>& counts, std::size_t map) {
+    Fits out = *fits[map];
+    for (const Line& line : lines_of(counts)) {
+        if (motion_along(suns, line) < kStill) continue;
+        for (int steps = -kNear; steps <= kNear; ++steps) {
+            const std::int64_t index = std::int64_t{line.index(map)} + steps;
+            if (steps == 0 || index < 0 || index >= std::int64_t{line.count}) continue;
+            const auto& other = fits[map + std::size_t(steps) * line.step];
+            for (std::size_t i = 0; other && i < out.of_radius.size(); ++i)
+                for (std::uint32_t roots = 0; roots <= kMostRoots; ++roots)
+                    out.of_radius[i][roots] += other->of_radius[i][roots];
+        }
+    }
+    return out;
+}
+
 /// How far the sun is off the great circle between its neighbours, in the middle between two maps.
 double off_path(const std::vector<std::optional<Found>>& found, const std::vector<std::uint32_t>& counts,
                 std::size_t map) {
@@ -316,26 +350,34 @@ Suns find_suns(const std::vector<SunMap>& maps, const std::vector<std::uint32_t>
     });
     const auto count = std::count_if(found.begin(), found.end(), [](const auto& sun) { return sun.has_value(); });
     if (count == 0 || (!given && 2 * std::size_t(count) < maps.size())) return out;
-    std::vector<std::array<std::pair<double, double>, kMostRoots + 1>> fits(maps.size());
+    const std::vector<double> radii = radii_for(found);
+    std::vector<std::optional<Fits>> fits(maps.size());
     compress::parallel_for(std::size_t{0}, maps.size(), [&](std::size_t i) {
         if (!found[i]) return;
-        const double off = off_path(found, counts, i);
-        for (std::uint32_t roots = 0; roots <= kMostRoots; ++roots)
-            fits[i][roots] = best_radius(*found[i], off, roots);
-    });
-    std::array<double, kMostRoots + 1> sums{};
-    for (const auto& fit : fits)
-        for (std::uint32_t roots = 0; roots <= kMostRoots; ++roots) sums[roots] += fit[roots].second;
-    out.any = true;
-    out.roots = static_cast<std::uint32_t>(std::min_element(sums.begin(), sums.end()) - sums.begin());
-    compress::parallel_for(std::size_t{0}, maps.size(), [&](std::size_t i) {
-        if (!found[i]) return;
+        fits[i].emplace(*found[i], off_path(found, counts, i), radii);
         AcdfMap& map = out.of_maps[i];
+        map.radius = 1.0f; // known
         map.sun_share = static_cast<float>(std::min(found[i]->share, 0.999));
-        map.radius = static_cast<float>(fits[i][out.roots].first);
         for (std::size_t k = 0; k < 3; ++k) map.sun[k] = static_cast<float>(found[i]->middle[k]);
         out.rest[i] = without_sun(maps[i], *found[i]);
     });
+    out.any = true;
+    std::vector<std::optional<Fits>> about(maps.size());
+    std::array<double, kMostRoots + 1> sums{};
+    const auto best_of = [&](const Fits& fit, std::uint32_t roots) {
+        return std::min_element(fit.of_radius.begin(), fit.of_radius.end(),
+                                [roots](const auto& a, const auto& b) { return a[roots] < b[roots]; }) -
+               fit.of_radius.begin();
+    };
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+        if (!found[i]) continue;
+        about[i] = fits_about(fits, out.of_maps, counts, i);
+        for (std::uint32_t roots = 0; roots <= kMostRoots; ++roots)
+            sums[roots] += about[i]->of_radius[std::size_t(best_of(*about[i], roots))][roots];
+    }
+    out.roots = static_cast<std::uint32_t>(std::min_element(sums.begin(), sums.end()) - sums.begin());
+    for (std::size_t i = 0; i < maps.size(); ++i)
+        if (about[i]) out.of_maps[i].radius = static_cast<float>(radii[std::size_t(best_of(*about[i], out.roots))]);
     add_hidden(out.of_maps, counts);
     return out;
 }

@@ -21,7 +21,8 @@ std::string lookup(const Name (&names)[N], std::uint32_t value) {
 constexpr Name kinds[] = {{ACDF_KIND_ENVIRONMENT, "environment"},
                           {ACDF_KIND_LOCAL, "local"},
                           {ACDF_KIND_BRDF, "brdf"},
-                          {ACDF_KIND_TABLE, "table"}};
+                          {ACDF_KIND_TABLE, "table"},
+                          {ACDF_KIND_INDEXED, "indexed"}};
 constexpr Name parameterizations[] = {{ACDF_PARAM_LATLONG, "latlong"},
                                       {ACDF_PARAM_HALF_ANGLE, "half-angle"},
                                       {ACDF_PARAM_TABLE, "table"},

@@ -21,20 +21,24 @@
 extern "C" {
 #endif
 
-enum { ACDF_MOST_MIXED = 8 };     /* 2^ACDF_MOST_INDEXED_AXES */
+enum { ACDF_MOST_MIXED = 8 }; /* 2^ACDF_MOST_INDEXED_AXES */
+#define ACDF_KEPT_SPLITS 127u
 #define ACDF_WEIGHTS 0x1p21       /* of a mixture: the sum of its weights */
 #define ACDF_TOP_TILE 0x80000000u /* a child that is a tile: this and its number */
 
-/* A split at the top of the tree, where each map has a code of its own; split 0 is the root. */
+/* A split at the top of the tree, where each map has a code of its own. They stand level by level; 0 is the root.
+ */
 typedef struct AcdfTopSplit {
-    uint32_t axis;
+    uint32_t axis, middle;
     uint32_t child[2]; /* lower and upper half: a later split, or ACDF_TOP_TILE | a tile */
 } AcdfTopSplit;
 
 /* A node at which codes of maps end. All maps share what is below. */
 typedef struct AcdfTopTile {
+    double scale;      /* pdf over probability, sr^-1 */
     uint32_t node;     /* of the shared tree, or ACDF_LEAF */
     AcdfSpan steps[2]; /* of that tree's random numbers */
+    AcdfSpan box[2];
 } AcdfTopTile;
 
 /* What is made when a file is opened: flat words without pointers, offsets in words from the start of this. */
@@ -47,6 +51,9 @@ typedef struct AcdfTop {
     uint32_t tiles;   /* AcdfTopTile[splits + 1] */
     uint32_t lower;   /* uint32[splits][maps]: the steps, out of 2^31, that lead to the lower half */
     uint32_t of_tile; /* uint32[splits + 1][maps]: those that lead to a tile */
+    uint32_t bits;    /* the lookup grid has squares of 2^-bits of each axis, in rows of axis 0; 0: there is none */
+    uint32_t starts;  /* uint32: of each square the deepest split that holds it, or ACDF_TOP_TILE | a tile */
+    uint32_t position_scale[2]; /* step * scale / 2^32 is the square of a grid step */
 } AcdfTop;
 
 /* A checked file of several maps. */
@@ -65,17 +72,26 @@ typedef struct AcdfIndexed {
 /* A mixture of up to eight maps, by value: an environment at some coordinates. */
 typedef struct AcdfMixed {
     const AcdfTop* top;
-    uint32_t columns, rows, parameterization;
+    AcdfGrid grid;
     uint32_t count; /* of maps that are mixed */
     uint32_t map[ACDF_MOST_MIXED];
     double weight[ACDF_MOST_MIXED]; /* whole numbers that add up to ACDF_WEIGHTS */
     double sun_share;               /* of samples in the cone */
     AcdfCone cone;
-    double total; /* integral over the sphere, linear between maps */
+    double total;                  /* integral over the sphere, linear between maps */
+    double kept[ACDF_KEPT_SPLITS]; /* probabilities of the lower halves of the first splits */
 } AcdfMixed;
 
 #define ACDF_TOP_ARRAY(type, top, offset)                                                                          \
     ((const type*)(const void*)((const uint32_t*)(const void*)(top) + (offset)))
+
+/* Steps of the maps of a mixture, at an array of one a map: out of 2^52. */
+ACDF_INLINE double acdf_mixed_steps(const AcdfMixed* sky, const uint32_t* of_maps) {
+    double sum = sky->weight[0] * (double)of_maps[sky->map[0]];
+    uint32_t k;
+    for (k = 1; k < sky->count; ++k) sum += sky->weight[k] * (double)of_maps[sky->map[k]];
+    return sum;
+}
 
 /* ---- where among the maps ----------------------------------------------------------------------------- */
 
@@ -136,9 +152,9 @@ ACDF_FN void acdf_indexed_at(const AcdfIndexed* file, const double* coordinates,
     uint32_t first[3], axis, corner, corners = 1u << file->axes, left;
     const double* of_axis = file->coordinates;
     out->top = file->top;
-    out->columns = file->columns;
-    out->rows = file->rows;
-    out->parameterization = file->parameterization;
+    out->grid.columns = file->columns;
+    out->grid.rows = file->rows;
+    out->grid.parameterization = file->parameterization;
     out->count = 0;
     for (axis = 0; axis < file->axes; ++axis) {
         first[axis] = acdf_index_before(of_axis, file->counts[axis], coordinates[axis], &between[axis]);
@@ -178,104 +194,127 @@ ACDF_FN void acdf_indexed_at(const AcdfIndexed* file, const double* coordinates,
         }
     }
     if (out->sun_share > 0.0) acdf_cone_about(suns[0], radii[0], file->sun - 1u, &out->cone);
+    left = file->top->splits < ACDF_KEPT_SPLITS ? file->top->splits : ACDF_KEPT_SPLITS;
+    for (corner = 0; corner < left; ++corner)
+        out->kept[corner] = 0x1p-52 * acdf_mixed_steps(out, ACDF_TOP_ARRAY(uint32_t, file->top, file->top->lower) +
+                                                                (size_t)corner * file->top->maps);
 }
 
 /* ---- the tree ------------------------------------------------------------------------------------------- */
-
-/* Steps of the maps of a mixture, at an array of one a map: out of 2^52. */
-ACDF_INLINE double acdf_mixed_steps(const AcdfMixed* sky, const uint32_t* of_maps) {
-    double sum = sky->weight[0] * (double)of_maps[sky->map[0]];
-    uint32_t k;
-    for (k = 1; k < sky->count; ++k) sum += sky->weight[k] * (double)of_maps[sky->map[k]];
-    return sum;
-}
 
 ACDF_INLINE double acdf_steps_in(const AcdfSpan steps[2]) {
     return (double)(steps[0].end[1] - steps[0].end[0]) * (double)(steps[1].end[1] - steps[1].end[0]);
 }
 
-/* The whole of both axes. */
-ACDF_INLINE void acdf_mixed_whole(const AcdfMixed* sky, AcdfSpan box[2]) {
-    box[0].end[0] = box[1].end[0] = 0;
-    box[0].end[1] = sky->columns;
-    box[1].end[1] = sky->rows;
-}
-
-/* The cell that u[2] lead to; u becomes what is left of them in it. Returns its probability. */
-ACDF_INLINE double acdf_mixed_descend(const AcdfMixed* sky, double u[2], AcdfSpan box[2]) {
-    const AcdfTop* top = sky->top;
-    const AcdfTopSplit* splits = ACDF_TOP_ARRAY(AcdfTopSplit, top, top->top);
-    const uint32_t* rows = ACDF_TOP_ARRAY(uint32_t, top, top->lower);
-    uint32_t at = top->splits ? 0 : ACDF_TOP_TILE, number[2];
-    double here = ACDF_WEIGHTS * 0x1p31;
-    AcdfSpan steps[2], whole[2];
-    const AcdfTopTile* tile;
+/* What is left of random numbers at the root of a tile becomes that of a cell in it. Returns the cell's share. */
+ACDF_OUTLINE_ON_CPU double acdf_tile_descend(const AcdfTop* top, const AcdfTopTile* tile, double u[2],
+                                             AcdfSpan box[2]) {
+    AcdfSpan steps[2];
+    uint32_t number[2];
     int axis;
-    acdf_mixed_whole(sky, box);
-    while (!(at & ACDF_TOP_TILE)) {
-        const AcdfTopSplit split = splits[at];
-        const double lower = acdf_mixed_steps(sky, rows + (size_t)at * top->maps);
-        const double x = u[split.axis] * here;
-        const uint32_t upper = x >= lower && here > lower;
-        box[split.axis].end[1u - upper] = acdf_span_middle(&box[split.axis]);
-        here = upper ? here - lower : lower;
-        u[split.axis] = (upper ? x - lower : x) / here;
-        at = split.child[upper];
-    }
-    tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + (at & ~ACDF_TOP_TILE);
-    if (tile->node == ACDF_LEAF) return here * 0x1p-52;
     for (axis = 0; axis < 2; ++axis) {
         const uint32_t low = tile->steps[axis].end[0], wide = tile->steps[axis].end[1] - low;
         const uint32_t step = (uint32_t)(u[axis] * (double)wide);
-        steps[axis] = whole[axis] = tile->steps[axis];
+        steps[axis] = tile->steps[axis];
         number[axis] = low + (step < wide ? step : wide - 1u);
     }
     acdf_halvings_sample(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile->node, number, steps, box);
     for (axis = 0; axis < 2; ++axis) {
-        const double wide = (double)(whole[axis].end[1] - whole[axis].end[0]);
-        const double t = (u[axis] * wide - (double)(steps[axis].end[0] - whole[axis].end[0])) /
+        const double wide = (double)(tile->steps[axis].end[1] - tile->steps[axis].end[0]);
+        const double t = (u[axis] * wide - (double)(steps[axis].end[0] - tile->steps[axis].end[0])) /
                          (double)(steps[axis].end[1] - steps[axis].end[0]);
         u[axis] = acdf_clamp(t, 0.0, 1.0);
     }
-    return here * 0x1p-52 * (acdf_steps_in(steps) / acdf_steps_in(whole));
+    return acdf_steps_in(steps) / acdf_steps_in(tile->steps);
 }
 
-/* The cell that holds a grid step of each axis. Returns its probability. */
-ACDF_INLINE double acdf_mixed_cell(const AcdfMixed* sky, const uint32_t position[2], AcdfSpan box[2]) {
+/* Pdf over probability in a box, sr^-1. */
+ACDF_INLINE double acdf_box_scale(const AcdfTop* top, const AcdfGrid* grid, const AcdfSpan box[2]) {
+    double height;
+    if (acdf_grid_is_octahedral(grid)) {
+        height = 2.0 * (double)(box[1].end[1] - box[1].end[0]) / (double)grid->rows;
+    } else {
+        const double* heights = ACDF_TOP_ARRAY(double, top, top->heights);
+        height = heights[box[1].end[0]] - heights[box[1].end[1]];
+    }
+    return (double)grid->columns / (2.0 * ACDF_PI * (double)(box[0].end[1] - box[0].end[0]) * height);
+}
+
+/* The cell that u[2] lead to; u becomes what is left of them in it. Returns its pdf. On its way u[axis] is
+ * x[axis] / of[axis]: a division a level would be waited for. */
+ACDF_INLINE double acdf_mixed_descend(const AcdfMixed* sky, double u[2], AcdfSpan box[2]) {
     const AcdfTop* top = sky->top;
     const AcdfTopSplit* splits = ACDF_TOP_ARRAY(AcdfTopSplit, top, top->top);
+    const uint32_t* rows = ACDF_TOP_ARRAY(uint32_t, top, top->lower);
     uint32_t at = top->splits ? 0 : ACDF_TOP_TILE;
-    AcdfSpan steps[2];
+    double here = 1.0, share, x[2], of[2];
     const AcdfTopTile* tile;
-    double here;
-    acdf_mixed_whole(sky, box);
+    int axis;
+    x[0] = u[0];
+    x[1] = u[1];
+    of[0] = of[1] = 1.0;
     while (!(at & ACDF_TOP_TILE)) {
-        const AcdfTopSplit split = splits[at];
-        const uint32_t middle = acdf_span_middle(&box[split.axis]), upper = position[split.axis] >= middle;
-        box[split.axis].end[1u - upper] = middle;
-        at = split.child[upper];
+        const AcdfTopSplit* split = &splits[at];
+        const double lower =
+            at < ACDF_KEPT_SPLITS ? sky->kept[at] : acdf_mixed_steps(sky, rows + (size_t)at * top->maps) * 0x1p-52;
+        const uint32_t a = split->axis;
+        const double border = lower * of[a], place = x[a] * here;
+        if (place >= border && here > lower) {
+            here -= lower;
+            x[a] = place - border;
+            at = split->child[1];
+        } else {
+            here = lower;
+            x[a] = place;
+            at = split->child[0];
+        }
+        of[a] *= here;
+        if (of[a] < 0x1p-800) { /* far from what doubles cannot hold */
+            of[a] *= 0x1p800;
+            x[a] *= 0x1p800;
+        }
     }
-    at &= ~ACDF_TOP_TILE;
-    tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + at;
-    here = acdf_mixed_steps(sky, ACDF_TOP_ARRAY(uint32_t, top, top->of_tile) + (size_t)at * top->maps);
-    if (tile->node == ACDF_LEAF || !(here > 0.0)) return here * 0x1p-52;
+    tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + (at & ~ACDF_TOP_TILE);
+    for (axis = 0; axis < 2; ++axis) {
+        u[axis] = acdf_clamp(x[axis] / of[axis], 0.0, 1.0);
+        box[axis] = tile->box[axis];
+    }
+    if (tile->node == ACDF_LEAF) return here * tile->scale;
+    share = acdf_tile_descend(top, tile, u, box);
+    return here * share * acdf_box_scale(top, &sky->grid, box);
+}
+
+/* The tile that holds a grid step of each axis. */
+ACDF_INLINE uint32_t acdf_top_find(const AcdfTop* top, const uint32_t position[2]) {
+    const AcdfTopSplit* splits = ACDF_TOP_ARRAY(AcdfTopSplit, top, top->top);
+    uint32_t at = top->splits ? 0 : ACDF_TOP_TILE;
+    if (top->bits) {
+        const uint32_t x = (uint32_t)((uint64_t)position[0] * top->position_scale[0] >> 32);
+        const uint32_t y = (uint32_t)((uint64_t)position[1] * top->position_scale[1] >> 32);
+        at = ACDF_TOP_ARRAY(uint32_t, top, top->starts)[y << top->bits | x];
+    }
+    while (!(at & ACDF_TOP_TILE)) {
+        const AcdfTopSplit* split = &splits[at];
+        at = split->child[position[split->axis] >= split->middle];
+    }
+    return at & ~ACDF_TOP_TILE;
+}
+
+/* The cell that holds a grid step of each axis. Returns its pdf. */
+ACDF_INLINE double acdf_mixed_cell(const AcdfMixed* sky, const uint32_t position[2], AcdfSpan box[2]) {
+    const AcdfTop* top = sky->top;
+    const uint32_t at = acdf_top_find(top, position);
+    const AcdfTopTile* tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + at;
+    const double here = acdf_mixed_steps(sky, ACDF_TOP_ARRAY(uint32_t, top, top->of_tile) + (size_t)at * top->maps);
+    AcdfSpan steps[2];
+    box[0] = tile->box[0];
+    box[1] = tile->box[1];
+    if (tile->node == ACDF_LEAF) return here * 0x1p-52 * tile->scale;
     steps[0] = tile->steps[0];
     steps[1] = tile->steps[1];
     acdf_halvings_find(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile->node, position, steps, box);
-    return here * 0x1p-52 * (acdf_steps_in(steps) / acdf_steps_in(tile->steps));
-}
-
-/* The pdf of the tree in a cell, sr^-1. */
-ACDF_INLINE double acdf_mixed_cell_pdf(const AcdfMixed* sky, const AcdfSpan box[2], double p) {
-    double height;
-    if (!(p > 0.0)) return 0.0;
-    if (sky->parameterization == ACDF_PARAM_OCTAHEDRAL)
-        height = 2.0 * (double)(box[1].end[1] - box[1].end[0]) / (double)sky->rows;
-    else {
-        const double* heights = ACDF_TOP_ARRAY(double, sky->top, sky->top->heights);
-        height = heights[box[1].end[0]] - heights[box[1].end[1]];
-    }
-    return p * (double)sky->columns / (2.0 * ACDF_PI * (double)(box[0].end[1] - box[0].end[0]) * height);
+    return here * 0x1p-52 * (acdf_steps_in(steps) / acdf_steps_in(tile->steps)) *
+           acdf_box_scale(top, &sky->grid, box);
 }
 
 /* ---- samples and pdfs ----------------------------------------------------------------------------------- */
@@ -295,14 +334,10 @@ ACDF_INLINE float acdf_mixed_both(const AcdfMixed* sky, const float direction[3]
 /* The cell that holds a direction, in doubles: right at borders, too. Returns its pdf; below 0 for directions that
  * have none. */
 ACDF_OUTLINE double acdf_mixed_at_border(const AcdfMixed* sky, const float direction[3], AcdfSpan box[2]) {
-    AcdfGrid grid;
     uint32_t square[2];
     double position[2];
-    grid.columns = sky->columns;
-    grid.rows = sky->rows;
-    grid.parameterization = sky->parameterization;
-    if (!acdf_grid_square(&grid, direction, square, position)) return -1.0;
-    return acdf_mixed_cell_pdf(sky, box, acdf_mixed_cell(sky, square, box));
+    if (!acdf_grid_square(&sky->grid, direction, square, position)) return -1.0;
+    return acdf_mixed_cell(sky, square, box);
 }
 
 /* The pdf in sr^-1 with which acdf_mixed_sample returns a direction: exactly the sample's. 0 where no sample falls,
@@ -311,15 +346,15 @@ ACDF_INLINE float acdf_mixed_pdf(const AcdfMixed* sky, const float direction[3])
     float position[2], error[2];
     double of_tree = -1.0, unused;
     AcdfSpan box[2];
-    if (sky->parameterization != ACDF_PARAM_OCTAHEDRAL &&
-        acdf_sphere_nearly(sky->columns, sky->rows, direction, position, error)) {
+    if (sky->grid.parameterization != ACDF_PARAM_OCTAHEDRAL &&
+        acdf_sphere_nearly(sky->grid.columns, sky->grid.rows, direction, position, error)) {
         uint32_t square[2];
         double p;
-        square[0] = (uint32_t)position[0] < sky->columns ? (uint32_t)position[0] : sky->columns - 1u;
-        square[1] = (uint32_t)position[1] < sky->rows ? (uint32_t)position[1] : sky->rows - 1u;
+        square[0] = (uint32_t)position[0] < sky->grid.columns ? (uint32_t)position[0] : sky->grid.columns - 1u;
+        square[1] = (uint32_t)position[1] < sky->grid.rows ? (uint32_t)position[1] : sky->grid.rows - 1u;
         p = acdf_mixed_cell(sky, square, box);
         if (acdf_is_surely_in(position, error, box[0].end[0], box[0].end[1], box[1].end[0], box[1].end[1]))
-            of_tree = acdf_mixed_cell_pdf(sky, box, p);
+            of_tree = p;
     }
     if (of_tree < 0.0) of_tree = acdf_mixed_at_border(sky, direction, box);
     return of_tree < 0.0 ? 0.0f : acdf_mixed_both(sky, direction, of_tree, &unused);
@@ -342,18 +377,14 @@ ACDF_INLINE AcdfDirectionSample acdf_mixed_sample(const AcdfMixed* sky, double u
     u[1] = (u[1] - sky->sun_share) / (1.0 - sky->sun_share);
     p = acdf_mixed_descend(sky, u, box);
     acdf_halved_ranges(box, range);
-    if (sky->parameterization != ACDF_PARAM_OCTAHEDRAL) {
+    if (sky->grid.parameterization != ACDF_PARAM_OCTAHEDRAL) {
         const double* heights = ACDF_TOP_ARRAY(double, sky->top, sky->top->heights);
-        out =
-            acdf_sphere_position_between(sky->columns, range, u, p, heights[range[1].low], heights[range[1].high]);
+        out = acdf_sphere_position_between(sky->grid.columns, range, u, p, heights[range[1].low],
+                                           heights[range[1].high]);
     } else {
-        AcdfGrid grid;
-        grid.columns = sky->columns;
-        grid.rows = sky->rows;
-        grid.parameterization = sky->parameterization;
-        out = acdf_grid_position(&grid, range, u, p);
+        out = acdf_grid_position(&sky->grid, range, u, p);
     }
-    out.pdf = acdf_mixed_both(sky, out.direction, acdf_mixed_cell_pdf(sky, box, p), &unused);
+    out.pdf = acdf_mixed_both(sky, out.direction, p, &unused);
     return out;
 }
 
@@ -367,24 +398,21 @@ ACDF_FN void acdf_mixed_strata(const AcdfMixed* sky, const uint32_t position[2],
     const AcdfTopTile* tile;
     AcdfSpan box[2], steps[2];
     int axis;
-    acdf_mixed_whole(sky, box);
     for (axis = 0; axis < 2; ++axis) strata[axis].low = 0.0, strata[axis].width = 1.0;
     while (!(at & ACDF_TOP_TILE)) {
         const AcdfTopSplit split = splits[at];
-        const uint32_t middle = acdf_span_middle(&box[split.axis]), upper = position[split.axis] >= middle;
+        const uint32_t upper = position[split.axis] >= split.middle;
         const double lower = acdf_mixed_steps(sky, rows + (size_t)at * top->maps),
                      of_half = upper ? here - lower : lower;
         AcdfStratum* stratum = &strata[split.axis];
         if (upper) stratum->low += stratum->width * (lower / here);
         stratum->width *= of_half / here;
-        box[split.axis].end[1u - upper] = middle;
         here = of_half;
         at = split.child[upper];
     }
     tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + (at & ~ACDF_TOP_TILE);
     if (tile->node == ACDF_LEAF) return;
-    steps[0] = tile->steps[0];
-    steps[1] = tile->steps[1];
+    for (axis = 0; axis < 2; ++axis) steps[axis] = tile->steps[axis], box[axis] = tile->box[axis];
     acdf_halvings_find(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile->node, position, steps, box);
     for (axis = 0; axis < 2; ++axis) {
         const double wide = (double)(tile->steps[axis].end[1] - tile->steps[axis].end[0]);
@@ -399,7 +427,6 @@ ACDF_FN int acdf_mixed_invert(const AcdfMixed* sky, const float direction[3], do
     AcdfSpan box[2];
     AcdfRange range[2];
     AcdfStratum strata[2];
-    AcdfGrid grid;
     uint32_t square[2], lowest[2];
     double position[2], t[2], in_cone, of_tree;
     int axis;
@@ -410,12 +437,9 @@ ACDF_FN int acdf_mixed_invert(const AcdfMixed* sky, const float direction[3], do
         u[1] *= sky->sun_share;
         return 1;
     }
-    grid.columns = sky->columns;
-    grid.rows = sky->rows;
-    grid.parameterization = sky->parameterization;
-    acdf_grid_square(&grid, direction, square, position);
+    acdf_grid_square(&sky->grid, direction, square, position);
     acdf_halved_ranges(box, range);
-    acdf_grid_fractions(&grid, direction, position, range, t);
+    acdf_grid_fractions(&sky->grid, direction, position, range, t);
     for (axis = 0; axis < 2; ++axis) lowest[axis] = range[axis].low;
     acdf_mixed_strata(sky, lowest, strata);
     for (axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t[axis]);

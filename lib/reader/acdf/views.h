@@ -183,7 +183,7 @@ class MixedEnvironment {
 public:
     MixedEnvironment() noexcept = default;
     ACDF_METHOD explicit MixedEnvironment(const AcdfMixed& data) noexcept : data_(data) {}
-    ACDF_METHOD bool empty() const noexcept { return data_.columns == 0; }
+    ACDF_METHOD bool empty() const noexcept { return data_.top == nullptr; }
 
     /// Samples a direction; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite, > 0.
     ACDF_INLINE_METHOD DirectionSample sample(double u0, double u1) const noexcept {

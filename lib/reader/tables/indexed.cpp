@@ -12,23 +12,32 @@ namespace {
 using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 
-constexpr u32 most_open_tops = 128; // nodes: a level of each axis, and one
+constexpr u32 most_open_tops = 128; // nodes that wait: a level of each axis, and one
+constexpr u32 most_levels = 64;
+constexpr u32 most_top_bits = 7; // of the lookup grid's axes
 
 u64 to_top_line(u64 words) { return (words + 15) / 16 * 16; }
 
 // Offsets in words.
 struct TopLayout {
-    u64 nodes, heights, top, tiles, lower, of_tile, words;
+    u32 bits = 0;
+    u64 nodes, heights, top, tiles, lower, of_tile, starts, words;
 
-    TopLayout(const Parts& parts, bool latlong) {
+    TopLayout(const Parts& parts, bool latlong, bool lookup) {
         const u64 splits = parts.maps->split_count, maps = parts.maps->map_count;
+        const u32 columns = parts.axes[ACDF_AXIS_PHI].resolution, rows = parts.axes[ACDF_AXIS_THETA].resolution;
+        // A square for a quarter of a tile or more, of a step or more.
+        while (lookup && bits < most_top_bits && splits >> 2 * bits > 0 && 2u << bits < columns &&
+               2u << bits < rows)
+            ++bits;
         nodes = to_top_line(words_for(8 * sizeof(AcdfTop)));
         heights = to_top_line(nodes + 2 * u64{parts.halving_count});
-        top = to_top_line(heights + (latlong ? 2 * (u64{parts.axes[ACDF_AXIS_THETA].resolution} + 1) : 0));
+        top = to_top_line(heights + (latlong ? 2 * (u64{rows} + 1) : 0));
         tiles = to_top_line(top + splits * (sizeof(AcdfTopSplit) / 4));
         lower = to_top_line(tiles + (splits + 1) * (sizeof(AcdfTopTile) / 4));
         of_tile = to_top_line(lower + splits * maps);
-        words = of_tile + (splits + 1) * maps;
+        starts = to_top_line(of_tile + (splits + 1) * maps);
+        words = starts + (bits ? u64{1} << 2 * bits : 0);
     }
 };
 
@@ -36,52 +45,94 @@ class TopMaker {
 public:
     TopMaker(const Parts& parts, AcdfTop* top)
         : parts_(parts), maps_(*parts.maps), top_(top), splits_(array<AcdfTopSplit>(top->top)),
-          tiles_(array<AcdfTopTile>(top->tiles)) {}
+          tiles_(array<AcdfTopTile>(top->tiles)) {
+        for (u32 code = 0; code < 1u << maps_.code_bits; ++code)
+            share_[code] = acdf_halving_share(code, maps_.code_bits);
+    }
 
     void run() {
-        number_nodes();
-        add_rows();
+        count_levels();
+        make_splits();
+        for (u32 y = 0; top_->bits && y < 1u << top_->bits; ++y)
+            for (u32 x = 0; x < 1u << top_->bits; ++x)
+                array<u32>(top_->starts)[y << top_->bits | x] = start_of(x, y);
     }
 
 private:
+    struct Open {
+        u32 node, number, level;
+        AcdfSpan steps[2], box[2];
+    };
+
     template <class T>
     T* array(u32 offset) const {
         return reinterpret_cast<T*>(reinterpret_cast<u32*>(top_) + offset);
     }
-    bool has_codes(u32 halving) const { return parts_.map_splits[halving / 8] >> halving % 8 & 1u; }
+    bool has_codes(u32 node) const { return node != ACDF_LEAF && (parts_.map_splits[node / 8] >> node % 8 & 1u); }
+    u32 half_of(u32 node, u32 upper) const {
+        const u32 link = parts_.halvings[node].link;
+        return link >> (3 + upper) & 1u ? ACDF_LEAF : node + (upper ? link >> 5 : 1);
+    }
 
-    // Splits and tiles in preorder.
-    void number_nodes() {
-        struct Open {
-            u32 node, parent, upper;
-            AcdfSpan steps[2];
+    // first_[n] becomes the number of the first split of level n.
+    void count_levels() {
+        u32 count[most_levels] = {}, waiting = 0;
+        struct Waiting {
+            u32 node, level;
         } open[most_open_tops];
-        u32 waiting = 0, splits = 0, tiles = 0;
-        Open& root = open[waiting++] = {};
-        root.node = parts_.halving_count ? 0 : ACDF_LEAF;
-        root.parent = ACDF_LEAF;
-        root.steps[0] = root.steps[1] = {{0, ACDF_STEPS}};
+        if (maps_.split_count > 0) open[waiting++] = {0, 0};
         while (waiting > 0) {
-            const Open at = open[--waiting];
-            const bool split = at.node != ACDF_LEAF && has_codes(at.node);
-            if (at.parent != ACDF_LEAF) splits_[at.parent].child[at.upper] = split ? splits : ACDF_TOP_TILE | tiles;
-            if (!split) {
-                tiles_[tiles++] = {at.node, {at.steps[0], at.steps[1]}};
-                continue;
-            }
-            const AcdfHalving halving = parts_.halvings[at.node];
-            const u32 axis = halving.link & 7u;
-            splits_[splits].axis = axis;
-            for (u32 upper = 2; upper-- > 0;) {
-                Open& half = open[waiting++] = at;
-                half.node =
-                    halving.link >> (3 + upper) & 1u ? ACDF_LEAF : at.node + (upper ? halving.link >> 5 : 1);
-                half.parent = splits;
-                half.upper = upper;
-                half.steps[axis].end[1 - upper] = halving.threshold;
-            }
-            ++splits;
+            const Waiting at = open[--waiting];
+            ++count[at.level];
+            for (u32 upper = 0; upper < 2; ++upper)
+                if (const u32 half = half_of(at.node, upper); has_codes(half))
+                    open[waiting++] = {half, at.level + 1};
         }
+        for (u32 level = 0; level + 1 < most_levels; ++level) first_[level + 1] = first_[level] + count[level];
+    }
+
+    // In preorder, in which codes stand. A split whose row is not made yet has there what leads to it.
+    void make_splits() {
+        u32 waiting = 0, rank = 0;
+        Open root = {};
+        root.node = parts_.halving_count ? 0 : ACDF_LEAF;
+        for (u32 axis = 0; axis < 2; ++axis) {
+            root.steps[axis] = {{0, ACDF_STEPS}};
+            root.box[axis] = {{0, parts_.axes[axis].resolution}};
+        }
+        const u32 child = take(root);
+        for (u32 map = 0; map < maps_.map_count; ++map) row(child)[map] = ACDF_STEPS;
+        if (!(child & ACDF_TOP_TILE)) open_[waiting++] = root;
+        while (waiting > 0) {
+            const Open at = open_[--waiting];
+            const AcdfHalving halving = parts_.halvings[at.node];
+            const u32 axis = halving.link & 7u, middle = acdf_span_middle(&at.box[axis]);
+            AcdfTopSplit& split = splits_[at.number];
+            split.axis = axis;
+            split.middle = middle;
+            for (u32 upper = 2; upper-- > 0;) {
+                Open half = at;
+                half.node = half_of(at.node, upper);
+                half.level = at.level + 1;
+                half.steps[axis].end[1 - upper] = halving.threshold;
+                half.box[axis].end[1 - upper] = middle;
+                split.child[upper] = take(half);
+                if (!(split.child[upper] & ACDF_TOP_TILE)) open_[waiting++] = half;
+            }
+            add_rows(split, at.number, rank++);
+        }
+    }
+
+    // The number of a node, which is a split or becomes a tile.
+    u32 take(Open& node) {
+        if (has_codes(node.node)) return node.number = first_[node.level]++;
+        const AcdfGrid grid = {parts_.axes[ACDF_AXIS_PHI].resolution, parts_.axes[ACDF_AXIS_THETA].resolution,
+                               parts_.description->parameterization};
+        tiles_[tile_count_] = {acdf_box_scale(top_, &grid, node.box),
+                               node.node,
+                               {node.steps[0], node.steps[1]},
+                               {node.box[0], node.box[1]}};
+        return ACDF_TOP_TILE | tile_count_++;
     }
 
     u32* row(u32 child) const {
@@ -89,31 +140,44 @@ private:
         return array<u32>(child & ACDF_TOP_TILE ? top_->of_tile : top_->lower) + number * maps_.map_count;
     }
 
-    // Codes become steps. Until its turn comes the row of a split holds the steps that lead to it.
-    void add_rows() {
-        for (u32 map = 0; map < maps_.map_count; ++map)
-            row(maps_.split_count ? 0 : ACDF_TOP_TILE)[map] = ACDF_STEPS;
-        u32 share[1u << ACDF_MOST_CODE_BITS];
-        for (u32 code = 0; code < 1u << maps_.code_bits; ++code)
-            share[code] = acdf_halving_share(code, maps_.code_bits);
-        for (u32 split = 0; split < maps_.split_count; ++split)
-            for (u32 map = 0; map < maps_.map_count; ++map) {
-                const u32 code = code_of(map, split), here = row(split)[map];
-                const AcdfSpan steps = {{0, here}};
-                const u32 lower = here > 0 ? acdf_halving_threshold(&steps, code, maps_.code_bits, share[code]) : 0;
-                row(splits_[split].child[0])[map] = lower;
-                row(splits_[split].child[1])[map] = here - lower;
-                row(split)[map] = lower;
-            }
+    void add_rows(const AcdfTopSplit& split, u32 number, u32 rank) {
+        u32 *const own = row(number), *const lower = row(split.child[0]), *const upper = row(split.child[1]);
+        for (u32 map = 0; map < maps_.map_count; ++map) {
+            const u32 code = code_of(map, rank);
+            const AcdfSpan steps = {{0, own[map]}};
+            const u32 below =
+                own[map] > 0 ? acdf_halving_threshold(&steps, code, maps_.code_bits, share_[code]) : 0;
+            lower[map] = below;
+            upper[map] = own[map] - below;
+            own[map] = below;
+        }
     }
 
-    u32 code_of(u32 map, u32 split) const {
+    u32 code_of(u32 map, u32 rank) const {
         const auto* codes = parts_.map_splits + 4 * words_for(parts_.halving_count);
-        const u64 at = (u64{map} * maps_.split_count + split) * maps_.code_bits;
+        const u64 at = (u64{map} * maps_.split_count + rank) * maps_.code_bits;
         const u64 word = at / 32, end = words_for(u64{maps_.map_count} * maps_.split_count * maps_.code_bits);
         u64 held = load_u32(codes + 4 * word);
         if (word + 1 < end) held |= u64{load_u32(codes + 4 * word + 4)} << 32;
         return static_cast<u32>(held >> at % 32) & ((1u << maps_.code_bits) - 1);
+    }
+
+    // The first step of an axis in a square, and of the one after it.
+    u32 first_step(u32 axis, u32 square) const {
+        const u64 scale = top_->position_scale[axis];
+        return static_cast<u32>(((u64{square} << 32) + scale - 1) / scale);
+    }
+
+    u32 start_of(u32 x, u32 y) const {
+        const u32 low[2] = {first_step(0, x), first_step(1, y)};
+        const u32 high[2] = {first_step(0, x + 1), first_step(1, y + 1)};
+        u32 at = 0;
+        while (!(at & ACDF_TOP_TILE)) {
+            const AcdfTopSplit& split = splits_[at];
+            if (low[split.axis] < split.middle && high[split.axis] > split.middle) break;
+            at = split.child[low[split.axis] >= split.middle];
+        }
+        return at;
     }
 
     const Parts& parts_;
@@ -121,24 +185,33 @@ private:
     AcdfTop* top_;
     AcdfTopSplit* splits_;
     AcdfTopTile* tiles_;
+    u32 tile_count_ = 0;
+    u32 first_[most_levels] = {};
+    u32 share_[1u << ACDF_MOST_CODE_BITS];
+    Open open_[most_open_tops];
 };
 
-AcdfTop* make_top(const Parts& parts, const AcdfAllocator& allocator, AcdfBlock& block) {
+AcdfTop* make_top(const Parts& parts, bool lookup, const AcdfAllocator& allocator, AcdfBlock& block) {
     const bool latlong = parts.description->parameterization == ACDF_PARAM_LATLONG;
-    const TopLayout layout(parts, latlong);
+    const TopLayout layout(parts, latlong, lookup);
     if (layout.words > 0xFFFFFFFFu || layout.words > SIZE_MAX / 4) return nullptr;
     block = take_block(allocator, static_cast<std::size_t>(4 * layout.words));
     if (!block.data) return nullptr;
     auto* top = static_cast<AcdfTop*>(block.data);
-    *top = {static_cast<u32>(layout.words),
-            parts.maps->map_count,
-            parts.maps->split_count,
-            static_cast<u32>(layout.nodes),
-            latlong ? static_cast<u32>(layout.heights) : 0,
-            static_cast<u32>(layout.top),
-            static_cast<u32>(layout.tiles),
-            static_cast<u32>(layout.lower),
-            static_cast<u32>(layout.of_tile)};
+    *top = {};
+    top->words = static_cast<u32>(layout.words);
+    top->maps = parts.maps->map_count;
+    top->splits = parts.maps->split_count;
+    top->nodes = static_cast<u32>(layout.nodes);
+    top->heights = latlong ? static_cast<u32>(layout.heights) : 0;
+    top->top = static_cast<u32>(layout.top);
+    top->tiles = static_cast<u32>(layout.tiles);
+    top->lower = static_cast<u32>(layout.lower);
+    top->of_tile = static_cast<u32>(layout.of_tile);
+    top->bits = layout.bits;
+    top->starts = static_cast<u32>(layout.starts);
+    for (u32 axis = 0; axis < 2; ++axis)
+        top->position_scale[axis] = static_cast<u32>((u64{1} << (32 + layout.bits)) / parts.axes[axis].resolution);
     u32* words = static_cast<u32*>(block.data);
     if (parts.halving_count)
         std::memcpy(words + top->nodes, parts.halvings, parts.halving_count * sizeof(AcdfHalving));
@@ -152,7 +225,8 @@ AcdfTop* make_top(const Parts& parts, const AcdfAllocator& allocator, AcdfBlock&
 
 } // namespace
 
-AcdfIndexed make_indexed(const Parts& parts, const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
+AcdfIndexed make_indexed(const Parts& parts, bool lookup, const AcdfAllocator& allocator,
+                         AcdfBlock& block) noexcept {
     AcdfIndexed out = {};
     out.columns = parts.axes[ACDF_AXIS_PHI].resolution;
     out.rows = parts.axes[ACDF_AXIS_THETA].resolution;
@@ -163,7 +237,7 @@ AcdfIndexed make_indexed(const Parts& parts, const AcdfAllocator& allocator, Acd
     out.total = parts.description->total;
     out.coordinates = parts.coordinates;
     out.maps = parts.of_map;
-    out.top = make_top(parts, allocator, block);
+    out.top = make_top(parts, lookup, allocator, block);
     return out;
 }
 

@@ -7,8 +7,9 @@
 
 namespace acdf {
 
-/// The view of the file of `parts`, whose tables lie in `block`, which the caller gives back; `top` is null where
-/// there is no memory. Linear in the file.
-AcdfIndexed make_indexed(const Parts& parts, const AcdfAllocator& allocator, AcdfBlock& block) noexcept;
+/// `lookup`: whether a lookup grid is made. The view of the file of `parts`, whose tables lie in `block`, which the
+/// caller gives back; `top` is null where there is no memory. Linear in the file.
+AcdfIndexed make_indexed(const Parts& parts, bool lookup, const AcdfAllocator& allocator,
+                         AcdfBlock& block) noexcept;
 
 } // namespace acdf

@@ -1,0 +1,46 @@
+// Several maps in one file: what `acdf env --axis` does.
+#pragma once
+
+#include "build/indexed/environment.h"
+#include "tools/cli/conversion.h"
+
+#include <acdf/builder.h>
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace acdf::tools {
+
+/// The options of several maps.
+class MapOptions {
+public:
+    void add(CLI::App& command);
+    /// Whether sources become one file: there are axes, or a source is a pattern such as sky.####.exr.
+    bool given(const std::vector<std::string>& sources) const;
+    /// Takes the sources over. Patterns become the files that they stand for, and an axis `frame`. Throws
+    /// CLI::ValidationError where they do not fit the axes, and Failure where a pattern stands for no file.
+    void take(const std::vector<std::string>& sources);
+
+    std::vector<std::string>& files() { return files_; }
+    bool any() const { return !axes_.empty(); }
+    Converted convert(const input::ProbeOptions& reading, const builder::TargetOptions& target,
+                      std::uint64_t budget, AcdfCodec codec, const Listener& listener) const;
+    /// As the file tells.
+    std::string text(const build::IndexedOptions& options) const { return build::option_text(options); }
+    build::IndexedOptions options(const input::ProbeOptions& reading, const builder::TargetOptions& target,
+                                  std::uint64_t budget, AcdfCodec codec) const;
+
+private:
+    void parse_axes();
+    void add_frames(const std::string& pattern);
+
+    std::vector<std::string> axis_texts_, sun_texts_;
+    bool no_sun_ = false;
+    std::vector<build::MapAxis> axes_;
+    std::vector<build::SunDirection> suns_;
+    std::vector<std::string> files_;
+};
+
+} // namespace acdf::tools
