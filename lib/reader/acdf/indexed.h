@@ -21,8 +21,9 @@
 extern "C" {
 #endif
 
-enum { ACDF_MOST_MIXED = 8 }; /* 2^ACDF_MOST_INDEXED_AXES */
-#define ACDF_KEPT_SPLITS 127u
+enum { ACDF_MOST_MIXED = 8 };     /* 2^ACDF_MOST_INDEXED_AXES */
+#define ACDF_KEPT_SPLITS 127u     /* at most 256 */
+#define ACDF_MIXED_SQUARES 16u    /* of an axis of random numbers */
 #define ACDF_WEIGHTS 0x1p21       /* of a mixture: the sum of its weights */
 #define ACDF_TOP_TILE 0x80000000u /* a child that is a tile: this and its number */
 
@@ -69,6 +70,11 @@ typedef struct AcdfIndexed {
     const AcdfTop* top;
 } AcdfIndexed;
 
+/* Where a descent begins: the probability of a split, and the random numbers that lead to it. */
+typedef struct AcdfMixedStart {
+    double here, low[2], width[2];
+} AcdfMixedStart;
+
 /* A mixture of up to eight maps, by value: an environment at some coordinates. */
 typedef struct AcdfMixed {
     const AcdfTop* top;
@@ -80,6 +86,8 @@ typedef struct AcdfMixed {
     AcdfCone cone;
     double total;                  /* integral over the sphere, linear between maps */
     double kept[ACDF_KEPT_SPLITS]; /* probabilities of the lower halves of the first splits */
+    AcdfMixedStart starts[ACDF_KEPT_SPLITS];
+    uint8_t square[ACDF_MIXED_SQUARES * ACDF_MIXED_SQUARES]; /* of random numbers: the deepest of these splits */
 } AcdfMixed;
 
 #define ACDF_TOP_ARRAY(type, top, offset)                                                                          \
@@ -145,6 +153,45 @@ ACDF_FN void acdf_whole_weights(double* weight, uint32_t count) {
     weight[most] += left;
 }
 
+/* Where descents begin: each square of random numbers at the deepest of the first splits that it leads to. */
+ACDF_FN void acdf_mixed_begin(AcdfMixed* sky) {
+    const AcdfTop* top = sky->top;
+    const AcdfTopSplit* splits = ACDF_TOP_ARRAY(AcdfTopSplit, top, top->top);
+    const uint32_t* rows = ACDF_TOP_ARRAY(uint32_t, top, top->lower);
+    const uint32_t count = top->splits < ACDF_KEPT_SPLITS ? top->splits : ACDF_KEPT_SPLITS;
+    double border[ACDF_KEPT_SPLITS];
+    uint32_t at, x, y;
+    sky->starts[0].here = sky->starts[0].width[0] = sky->starts[0].width[1] = 1.0;
+    sky->starts[0].low[0] = sky->starts[0].low[1] = 0.0;
+    for (at = 0; at < count; ++at) {
+        const AcdfMixedStart* start = &sky->starts[at];
+        const uint32_t axis = splits[at].axis;
+        const double lower = sky->kept[at] = 0x1p-52 * acdf_mixed_steps(sky, rows + (size_t)at * top->maps);
+        const double share = start->here > 0.0 ? lower / start->here : 0.0;
+        border[at] = start->low[axis] + start->width[axis] * share;
+        for (x = 0; x < 2u; ++x) {
+            const uint32_t child = splits[at].child[x];
+            if (child >= count) continue; /* or a tile */
+            sky->starts[child] = *start;
+            sky->starts[child].here = x ? start->here - lower : lower;
+            sky->starts[child].width[axis] *= x ? 1.0 - share : share;
+            if (x) sky->starts[child].low[axis] = border[at];
+        }
+    }
+    for (y = 0; y < ACDF_MIXED_SQUARES; ++y)
+        for (x = 0; x < ACDF_MIXED_SQUARES; ++x) {
+            uint32_t next = 0;
+            for (at = 0; next < count;) {
+                const double low = (double)(splits[at = next].axis ? y : x) * (1.0 / ACDF_MIXED_SQUARES);
+                if (low >= border[at]) next = splits[at].child[1];
+                else if (low + 1.0 / ACDF_MIXED_SQUARES <= border[at]) next = splits[at].child[0];
+                else break;
+                if (next < count && !(sky->starts[next].here > 0.0)) break;
+            }
+            sky->square[y * ACDF_MIXED_SQUARES + x] = (uint8_t)at;
+        }
+}
+
 /* The mixture of the maps around coordinates[axes]. What lies beyond the first or the last is that one; what is not
  * a number is the first. */
 ACDF_FN void acdf_indexed_at(const AcdfIndexed* file, const double* coordinates, AcdfMixed* out) {
@@ -194,10 +241,7 @@ ACDF_FN void acdf_indexed_at(const AcdfIndexed* file, const double* coordinates,
         }
     }
     if (out->sun_share > 0.0) acdf_cone_about(suns[0], radii[0], file->sun - 1u, &out->cone);
-    left = file->top->splits < ACDF_KEPT_SPLITS ? file->top->splits : ACDF_KEPT_SPLITS;
-    for (corner = 0; corner < left; ++corner)
-        out->kept[corner] = 0x1p-52 * acdf_mixed_steps(out, ACDF_TOP_ARRAY(uint32_t, file->top, file->top->lower) +
-                                                                (size_t)corner * file->top->maps);
+    acdf_mixed_begin(out);
 }
 
 /* ---- the tree ------------------------------------------------------------------------------------------- */
@@ -240,6 +284,11 @@ ACDF_INLINE double acdf_box_scale(const AcdfTop* top, const AcdfGrid* grid, cons
     return (double)grid->columns / (2.0 * ACDF_PI * (double)(box[0].end[1] - box[0].end[0]) * height);
 }
 
+ACDF_INLINE uint32_t acdf_mixed_square(double u) {
+    const uint32_t square = (uint32_t)(u * ACDF_MIXED_SQUARES);
+    return square < ACDF_MIXED_SQUARES ? square : ACDF_MIXED_SQUARES - 1u;
+}
+
 /* The cell that u[2] lead to; u becomes what is left of them in it. Returns its pdf. On its way u[axis] is
  * x[axis] / of[axis]: a division a level would be waited for. */
 ACDF_INLINE double acdf_mixed_descend(const AcdfMixed* sky, double u[2], AcdfSpan box[2]) {
@@ -247,12 +296,16 @@ ACDF_INLINE double acdf_mixed_descend(const AcdfMixed* sky, double u[2], AcdfSpa
     const AcdfTopSplit* splits = ACDF_TOP_ARRAY(AcdfTopSplit, top, top->top);
     const uint32_t* rows = ACDF_TOP_ARRAY(uint32_t, top, top->lower);
     uint32_t at = top->splits ? 0 : ACDF_TOP_TILE;
-    double here = 1.0, share, x[2], of[2];
+    double here, share, x[2], of[2];
     const AcdfTopTile* tile;
     int axis;
-    x[0] = u[0];
-    x[1] = u[1];
-    of[0] = of[1] = 1.0;
+    if (!(at & ACDF_TOP_TILE))
+        at = sky->square[acdf_mixed_square(u[1]) * ACDF_MIXED_SQUARES + acdf_mixed_square(u[0])];
+    here = sky->starts[at & ~ACDF_TOP_TILE].here;
+    for (axis = 0; axis < 2; ++axis) {
+        x[axis] = u[axis] - sky->starts[at & ~ACDF_TOP_TILE].low[axis];
+        of[axis] = sky->starts[at & ~ACDF_TOP_TILE].width[axis];
+    }
     while (!(at & ACDF_TOP_TILE)) {
         const AcdfTopSplit* split = &splits[at];
         const double lower =

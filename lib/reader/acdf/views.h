@@ -219,7 +219,7 @@ public:
     /// How many axes there are.
     ACDF_METHOD std::uint32_t axes() const noexcept { return data_.axes; }
     /// The environment at coordinates[axes()], mixed of the maps around them. Beyond the first and the last of an
-    /// axis these stand. Takes about a microsecond: once a frame.
+    /// axis these stand. Takes some microseconds: once a frame.
     ACDF_METHOD MixedEnvironment at(const double* coordinates) const noexcept {
         AcdfMixed out;
         acdf_indexed_at(&data_, coordinates, &out);
