@@ -30,5 +30,6 @@ std::vector<Case> portal_cases();     ///< and with portals
 std::vector<Case> fast_cases();       ///< of the fast shape of kind 2
 std::vector<Case> local_cases();      ///< of kind 2 and of what bins share
 std::vector<Case> halvings_cases();   ///< of kind 1 with HALV
+std::vector<Case> indexed_cases();    ///< of kind 5
 
 } // namespace acdf_test
