@@ -6,13 +6,14 @@ from .planes import tree_of_planes
 from .refused import Refused, require
 
 MAGIC = bytes.fromhex("AB4143444620 20BB0D0A1A0A".replace(" ", ""))
-ENVIRONMENT, LOCAL, BRDF, TABLE = 1, 2, 3, 4
+ENVIRONMENT, LOCAL, BRDF, TABLE, INDEXED = 1, 2, 3, 4, 5
 INFLATED_LIMIT = 1 << 30
 # Of each known chunk: its flags, and the kinds in whose files it may be.
-KNOWN = {b"DESC": (1, (1, 2, 3, 4)), b"BINS": (1, (1, 2, 3, 4)), b"TREE": (1, (1, 2, 3, 4)),
-         b"META": (0, (1, 2, 3, 4)), b"TILE": (1, (2, 3)), b"ROWS": (1, (2, 3)), b"VIEW": (1, (3,)),
+KNOWN = {b"DESC": (1, (1, 2, 3, 4, 5)), b"BINS": (1, (1, 2, 3, 4, 5)), b"TREE": (1, (1, 2, 3, 4, 5)),
+         b"META": (0, (1, 2, 3, 4, 5)), b"TILE": (1, (2, 3)), b"ROWS": (1, (2, 3)), b"VIEW": (1, (3,)),
          b"LOCL": (1, (2,)), b"COMP": (1, (1, 2, 4)), b"PLAC": (0, (2,)), b"PORT": (0, (2,)),
-         b"SUMS": (1, (2,)), b"GRID": (1, (2,)), b"HALV": (1, (1,))}
+         b"SUMS": (1, (2,)), b"GRID": (1, (2,)), b"HALV": (1, (1, 5)),
+         b"MAPS": (1, (5,))}
 
 __all__ = ["Refused", "Container", "read_container"]
 
@@ -58,7 +59,7 @@ def read_header(data):
     table = data[64:64 + 48 * count]
     require(crc == zlib.crc32(data[:60] + table), 2004)
     require(length == len(data), 2005)
-    require(1 <= kind <= 4, 2006)
+    require(1 <= kind <= 5, 2006)
     require(required == 0, 2007)
     require(data[40:60] == bytes(20), 2008)
     return kind, table
@@ -91,7 +92,8 @@ def check_records(data, kind, records):
         require(record.codec == 0 or record.raw_length < 1032 * (record.stored_length + 1), 3011)
         require(not any(data[end:record.offset]), 4002)
         end = record.offset + record.stored_length
-    for wanted in (b"DESC",) if b"HALV" in seen else (b"DESC", b"BINS", b"TREE"):
+    wanted_of_maps = (b"DESC", b"HALV", b"MAPS")
+    for wanted in wanted_of_maps if kind == INDEXED else (b"DESC",) if b"HALV" in seen else (b"DESC", b"BINS", b"TREE"):
         require(wanted in seen, 3004, wanted)
     require(len(data) == round_up(end), 3008)
     require(not any(data[end:]), 4002)

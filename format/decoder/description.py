@@ -2,7 +2,7 @@
 import math
 import struct
 
-from .container import BRDF, ENVIRONMENT, LOCAL, TABLE
+from .container import BRDF, ENVIRONMENT, INDEXED, LOCAL, TABLE
 from .refused import require
 
 NOT_STORED = 0xFFFFFFFF
@@ -46,7 +46,7 @@ def read_description(container):
     require(d.bin_count >= 1, 5007)
     require(all(math.isfinite(w) and w >= 0 for w in weights), 5009)
     require(math.isfinite(d.total) and d.total > 0, 5010)
-    allowed = {ENVIRONMENT: (1, 4), LOCAL: (1, 4), BRDF: (2,), TABLE: (3,)}[container.kind]
+    allowed = {ENVIRONMENT: (1, 4), LOCAL: (1, 4), BRDF: (2,), TABLE: (3,), INDEXED: (1, 4)}[container.kind]
     require(d.parameterization in allowed, 5016)
     d.axes = [Axis(data[64 + 48 * i:112 + 48 * i]) for i in range(axis_count)]
     check_axes(d.axes)

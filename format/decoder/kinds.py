@@ -1,10 +1,11 @@
 """SPEC.md §2.1: from the chunks of a file to the view of its kind."""
 from .brdf import Brdf
 from .partner import Partner
-from .container import BRDF, ENVIRONMENT, LOCAL
+from .container import BRDF, ENVIRONMENT, INDEXED, LOCAL
 from .description import NOT_STORED
 from .fast import FastTiles
 from .halvings import Halvings
+from .indexed import Indexed, check_indexed_axes
 from .local import Local
 from .refused import require
 from .sphere import Environment
@@ -25,6 +26,9 @@ def sampler_of(container, d):
     chunks, kind = container.payloads, container.kind
     if b"HALV" in chunks:
         require(b"BINS" not in chunks and b"TREE" not in chunks and d.fit == 4, 6035)
+        if kind == INDEXED:
+            check_indexed_axes(d)
+            return Indexed(chunks[b"HALV"], chunks[b"MAPS"], d)
         return Environment(Halvings(chunks[b"HALV"], [axis.resolution for axis in d.axes]), None, grid_of(d))
     tiles = None
     if b"SUMS" in chunks or b"GRID" in chunks:

@@ -1,0 +1,128 @@
+// The sun of maps: where it is found, and where none is.
+#include "tests/lib/build/indexed/skies.h"
+
+#include "build/indexed/sun.h"
+#include "build/indexed/texels.h"
+
+#include <cmath>
+
+using namespace acdf_test;
+
+namespace {
+
+/// A sky of radiance 1 above and 0.2 below, and lamps on it.
+struct Lamp {
+    acdf::build::SunDirection towards;
+    double light, radius;
+};
+SkyMap lamps(int width, const std::vector<Lamp>& all) {
+    std::vector<float> rgb;
+    for (int row = 0; row < width / 2; ++row)
+        for (int column = 0; column < width; ++column) {
+            const clear_sky::Vector d = clear_sky::towards(column + 0.5, row + 0.5, width);
+            double light = d[2] > 0.0 ? 1.0 : 0.2;
+            for (const Lamp& lamp : all)
+                if (std::hypot(d[0] - lamp.towards[0], d[1] - lamp.towards[1], d[2] - lamp.towards[2]) <
+                    lamp.radius)
+                    light += lamp.light;
+            rgb.insert(rgb.end(), 3, static_cast<float>(light));
+        }
+    return sky_map(rgb, width);
+}
+
+acdf::build::Suns suns_of(const std::vector<SkyMap>& maps,
+                          const std::vector<acdf::build::SunDirection>* given = nullptr) {
+    std::vector<acdf::build::SunMap> views;
+    for (const SkyMap& map : maps) views.push_back(map.view());
+    return acdf::build::find_suns(views, {static_cast<std::uint32_t>(maps.size())}, given);
+}
+
+double off(const AcdfMap& map, const acdf::build::SunDirection& sun) {
+    return std::hypot(map.sun[0] - sun[0], map.sun[1] - sun[1], map.sun[2] - sun[2]);
+}
+
+acdf::build::SunDirection at_height(double degrees) {
+    const double angle = degrees * ACDF_PI / 180.0;
+    return {std::cos(angle) * 0.6, std::cos(angle) * 0.8, std::sin(angle)};
+}
+
+TEST(Suns, areFoundFromTheHorizonToTheZenith) {
+    constexpr int width = 256;
+    const std::vector<double> heights = {2.0, 10.0, 45.0, 80.0, 90.0};
+    std::vector<SkyMap> maps;
+    for (const double height : heights) maps.push_back(lamps(width, {{at_height(height), 5e4, 0.02}}));
+    const acdf::build::Suns suns = suns_of(maps);
+    ASSERT_TRUE(suns.any);
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+        EXPECT_LT(off(suns.of_maps[i], at_height(heights[i])), ACDF_PI / width)
+            << heights[i]; // a quarter of a texel
+        const double light = 5e4 * ACDF_PI * 0.02 * 0.02;
+        EXPECT_NEAR(suns.of_maps[i].sun_share, light / (light + 2.4 * ACDF_PI), 0.1) << heights[i];
+        EXPECT_GT(suns.of_maps[i].radius, 0.02);
+        EXPECT_LT(suns.of_maps[i].radius, 0.15);
+        // The tree gets the sky alone.
+        for (const float value : suns.rest[i]) ASSERT_LE(value, 1.01f);
+    }
+}
+
+TEST(Suns, belowTheHorizonGoOnWhereTheyWere) {
+    std::vector<SkyMap> maps;
+    for (const double height : {-10.0, 0.0, 10.0, 20.0, 30.0, 40.0})
+        maps.push_back(height > 5.0 ? lamps(128, {{at_height(height), 5e4, 0.03}}) : lamps(128, {}));
+    const acdf::build::Suns suns = suns_of(maps);
+    ASSERT_TRUE(suns.any);
+    EXPECT_EQ(suns.of_maps[1].sun_share, 0.0f);
+    EXPECT_LT(off(suns.of_maps[1], at_height(0.0)), 0.01);
+    EXPECT_EQ(suns.of_maps[0].sun_share, 0.0f);
+}
+
+TEST(Suns, areNoneWhereThereIsNoSmallBrightBody) {
+    EXPECT_FALSE(suns_of({lamps(128, {}), lamps(128, {})}).any);
+    const Lamp wide = {at_height(40.0), 100.0, 0.3};
+    EXPECT_FALSE(suns_of({lamps(128, {wide}), lamps(128, {wide})}).any);
+    const Lamp dim = {at_height(40.0), 8.0, 0.03};
+    EXPECT_FALSE(suns_of({lamps(128, {dim}), lamps(128, {dim})}).any);
+    const std::vector<Lamp> two = {{at_height(40.0), 5e4, 0.03}, {{-0.6, -0.8, 0.0}, 5e4, 0.03}};
+    EXPECT_FALSE(suns_of({lamps(128, two), lamps(128, two)}).any);
+    // In one of three maps.
+    EXPECT_FALSE(suns_of({lamps(128, {{at_height(40.0), 5e4, 0.03}}), lamps(128, {}), lamps(128, {})}).any);
+}
+
+TEST(Suns, areWhereTheyAreGiven) {
+    const std::vector<Lamp> two = {{at_height(40.0), 5e4, 0.03}, {{-0.6, -0.8, 0.0}, 6e4, 0.03}};
+    const std::vector<acdf::build::SunDirection> given = {at_height(40.5), {0.0, 0.0, 0.0}};
+    const acdf::build::Suns suns = suns_of({lamps(128, two), lamps(128, {})}, &given);
+    ASSERT_TRUE(suns.any);
+    EXPECT_LT(off(suns.of_maps[0], at_height(40.0)), 0.01);
+    EXPECT_GT(suns.of_maps[0].sun_share, 0.1f);
+    EXPECT_EQ(suns.of_maps[1].sun_share, 0.0f);
+}
+
+/// A sky that turns and is rescaled: what one sees of it does not flicker.
+TEST(Suns, turningSkyDoesNotFlicker) {
+    constexpr int width = 256, frames = 9;
+    std::vector<SkyMap> maps;
+    std::vector<double> times;
+    const auto turned = [&](double frame) {
+        const double turn = frame * 3.0 * ACDF_PI / 180.0;
+        const clear_sky::Vector sun = {0.7 * std::cos(turn), 0.7 * std::sin(turn), std::sqrt(0.51)};
+        std::vector<float> rgb = clear_sky::latlong(clear_sky::Sky(sun, 3.0), width);
+        for (float& value : rgb) value *= static_cast<float>(1.0 + 0.1 * frame);
+        return sky_map(rgb, width);
+    };
+    for (int frame = 0; frame < frames; ++frame) {
+        maps.push_back(turned(frame));
+        times.push_back(frame);
+    }
+    const SkyFile file(maps, along("frame", times));
+    double before = 0.0;
+    for (double frame = 0.0; frame <= frames - 1; frame += 0.5) {
+        const double variance = file.variance(file.file.indexed().at(frame), turned(frame));
+        if (before > 0.0) {
+            EXPECT_NEAR(variance / before, 1.0, 0.15) << frame;
+        }
+        before = variance;
+    }
+}
+
+} // namespace
