@@ -7,6 +7,7 @@
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
+#include "tools/cli/map_options.h"
 #include "tools/cli/mis_options.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
@@ -18,7 +19,6 @@
 #include "tools/cli/target_memory.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
-#include "tools/indexed.h"
 
 #include <CLI/CLI.hpp>
 

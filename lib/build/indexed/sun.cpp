@@ -19,7 +19,8 @@ constexpr double kDegree = ACDF_PI / 180.0;
 constexpr std::uint32_t kSunParts = 4; // of a texel along each axis, where the cone is fitted
 constexpr std::uint32_t kMostRoots = ACDF_MOST_SUN - 1;
 constexpr double kRadiusStep = 1.08;     // of the radii that are tried
-constexpr int kNear = 3;                 // maps on both sides whose suns count for a radius
+constexpr int kNear = 6;                 // maps on both sides whose suns count for a radius
+constexpr double kSpareRadius = 1.06;    // for how the sun lies among the texels between maps
 constexpr double kStill = 0.1 * kDegree; // what moves less between maps stands still
 
 double angle_between(const SunDirection& a, const SunDirection& b) {
@@ -192,14 +193,15 @@ double moment_about(const Found& sun, double off, double radius, std::uint32_t r
     return 0.5 * moment;
 }
 
-/// What cones of several radii and profiles leave of a sun.
+/// What cones of several radii and profiles leave of a sun: fourth powers, so that the worst of several counts
+/// most.
 struct Fits {
     std::vector<std::array<double, kMostRoots + 1>> of_radius;
 
     Fits(const Found& sun, double off, const std::vector<double>& radii) : of_radius(radii.size()) {
         for (std::size_t i = 0; i < radii.size(); ++i)
             for (std::uint32_t roots = 0; roots <= kMostRoots; ++roots)
-                of_radius[i][roots] = moment_about(sun, off, radii[i], roots);
+                of_radius[i][roots] = std::pow(moment_about(sun, off, radii[i], roots), 4.0);
     }
 };
 
@@ -377,7 +379,9 @@ Suns find_suns(const std::vector<SunMap>& maps, const std::vector<std::uint32_t>
     }
     out.roots = static_cast<std::uint32_t>(std::min_element(sums.begin(), sums.end()) - sums.begin());
     for (std::size_t i = 0; i < maps.size(); ++i)
-        if (about[i]) out.of_maps[i].radius = static_cast<float>(radii[std::size_t(best_of(*about[i], out.roots))]);
+        if (about[i])
+            out.of_maps[i].radius =
+                static_cast<float>(kSpareRadius * radii[std::size_t(best_of(*about[i], out.roots))]);
     add_hidden(out.of_maps, counts);
     return out;
 }

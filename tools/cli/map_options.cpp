@@ -1,4 +1,4 @@
-#include "tools/indexed.h"
+#include "tools/cli/map_options.h"
 
 #include "build/builder/options.h"
 #include "build/builder/sources.h"
