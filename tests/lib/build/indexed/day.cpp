@@ -111,13 +111,13 @@ TEST_F(Day, samplesBetweenMapsFollowThePdf) {
                             kRows = 32; // cells of the tree are texels: 4 x 4 of them, 6 x 6 points each
     std::vector<double> probability(kColumns * kRows);
     constexpr std::uint32_t kPoints = 24;
+    const acdf::compress::Target fine =
+        acdf::compress::empty_target(kColumns * kPoints, kRows * kPoints, ACDF_PARAM_LATLONG);
     for (std::uint32_t y = 0; y < kRows * kPoints; ++y)
         for (std::uint32_t x = 0; x < kColumns * kPoints; ++x) {
             float d[3];
             const double rows = kRows * kPoints, columns = kColumns * kPoints;
-            acdf::build::grid_direction(
-                acdf::compress::empty_target(kColumns * kPoints, kRows * kPoints, ACDF_PARAM_LATLONG), x + 0.5,
-                y + 0.5, d);
+            acdf::build::grid_direction(fine, x + 0.5, y + 0.5, d);
             probability[y / kPoints * kColumns + x / kPoints] +=
                 double{sky.pdf(d)} * 2.0 * ACDF_PI / columns *
                 (std::cos(ACDF_PI * y / rows) - std::cos(ACDF_PI * (y + 1) / rows));
