@@ -1,4 +1,4 @@
-"""SPEC.md §5.13 and §6.14: environments of several maps."""
+"""SPEC.md §15: environments of several maps."""
 import math
 import struct
 

@@ -22,7 +22,7 @@ enum class PlotProjection { automatic, latlong, angular, hemisphere };
 struct PlotArguments {
     std::string file, output, range, view;
     std::vector<float> normal, position;
-    std::string mesh; // the cells over it are shown, not a pdf
+    std::string mesh;            // the cells over it are shown, not a pdf
     std::vector<std::string> at; // where among several maps
     input::UpAxis up = input::UpAxis::z;
     std::vector<double> from, to; // the camera

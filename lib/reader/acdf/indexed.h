@@ -1,4 +1,4 @@
-/* Environments of several maps, as of a day: one tree of halvings with a row of codes for each map (SPEC.md §5.13).
+/* Environments of several maps, as of a day: one tree of halvings with a row of codes for each map (SPEC.md §15).
  * Between maps the pdf is the mixture that is linear in each indexed axis. Valid C99, C++17 and CUDA/HIP/SYCL; no
  * allocation, no errors.
  *
