@@ -13,7 +13,7 @@ class Map:
 
     def is_right(self, sun):
         length = sum(x * x for x in self.sun)
-        return (math.isfinite(self.share) and self.share > 0 and 0 <= self.sun_share < 1 and 0 <= self.radius <= 1 and
+        return (math.isfinite(self.share) and self.share > 0 and 0 <= self.sun_share < 1 and (self.radius == 0 or 2.0**-10 <= self.radius <= 1) and
                 (abs(length - 1) < 1e-3 if self.radius > 0 else length == 0) and
                 (self.sun_share == 0 or (sun > 0 and self.radius > 0)))
 

@@ -47,6 +47,8 @@ private:
 
 /// Adds OpenFile to the module.
 void add_file(py::module_& module);
+/// Adds environments of several maps at some coordinates.
+void add_indexed(py::module_& module);
 
 /// Raises what an error of the reader is in Python: OSError, MemoryError, or acdf.FileError.
 [[noreturn]] void raise(const AcdfError& error);

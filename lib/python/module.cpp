@@ -6,6 +6,7 @@ PYBIND11_MODULE(_acdf, module) {
     module.attr("__version__") = ACDF_VERSION;
     module.attr("format_version") = std::to_string(ACDF_VERSION_MAJOR) + "." + std::to_string(ACDF_VERSION_MINOR);
     acdf::python::add_file(module);
+    acdf::python::add_indexed(module);
     acdf::python::add_build(module);
     acdf::python::add_renderers(module);
 }

@@ -186,6 +186,26 @@ void sample_walk(const acdf::File& file, FuzzRandom& random) {
     sample_brdf_walk(tables, file.kind() == ACDF_KIND_BRDF, random);
 }
 
+void sample_everything(const acdf::IndexedEnvironment& maps, FuzzRandom& random) {
+    for (int n = 0; n < 4; ++n) {
+        const AcdfIndexed& data = maps.data();
+        double at[3];
+        const double* of_axis = data.coordinates;
+        for (std::uint32_t axis = 0; axis < data.axes; of_axis += data.counts[axis++])
+            at[axis] = of_axis[0] + (of_axis[data.counts[axis] - 1] - of_axis[0]) * random.uniform();
+        const acdf::MixedEnvironment sky = maps.at(at);
+        for (int i = 0; i < samples_a_file / 4; ++i) {
+            const acdf::DirectionSample s = sky.sample(random.any_u(), random.any_u());
+            float any[3];
+            double u[2];
+            random.any_vector(any);
+            require(is_pdf(static_cast<double>(sky.pdf(any))));
+            require(is_unit(s.direction) && s.pdf > 0.0f && std::isfinite(s.pdf) && sky.pdf(s.direction) == s.pdf);
+            require(sky.invert(s.direction, u) && in_unit_square(u));
+        }
+    }
+}
+
 } // namespace
 
 void sample_everything(const acdf::File& file, const void* bytes, std::size_t size) {
@@ -202,6 +222,7 @@ void sample_everything(const acdf::File& file, const void* bytes, std::size_t si
     if (file.kind() == ACDF_KIND_LOCAL) sample_everything(file.local(), random);
     if (file.kind() == ACDF_KIND_BRDF) sample_everything(file.brdf(), random);
     if (file.kind() == ACDF_KIND_TABLE) sample_everything(file.table(), random);
+    if (file.kind() == ACDF_KIND_INDEXED) sample_everything(file.indexed(), random);
     if (file.header().header_crc % 4 == 1) sample_walk(file, random);
     if (size % 8 == 0 && file.header().header_crc % 8 == 0) sample_in_c(bytes, size, file, random); // loads again
 }

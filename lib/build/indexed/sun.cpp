@@ -213,7 +213,7 @@ std::vector<double> radii_for(const std::vector<std::optional<Found>>& found) {
         most = std::max(most, sun->reach);
     }
     std::vector<double> out;
-    for (double radius = 0.4 * least; radius < std::min(2.5 * most, 0.5); radius *= kRadiusStep)
+    for (double radius = std::max(0.4 * least, 0x1p-9); radius < std::min(2.5 * most, 0.5); radius *= kRadiusStep)
         out.push_back(radius);
     return out;
 }

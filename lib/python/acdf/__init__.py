@@ -17,7 +17,7 @@ from ._acdf import __version__, format_version
 from ._errors import BuildError, FileError
 from ._renderers import Renderer, renderers
 from .build import EnvironmentRebuilder, build_brdf, build_environment, build_local, build_table
-from .files import Brdf, Environment, File, LocalEnvironment, Samples, Table, open
+from .files import Brdf, Environment, File, IndexedEnvironment, LocalEnvironment, MixedEnvironment, Samples, Table, open
 
 __all__ = [
     "Brdf",
@@ -26,7 +26,9 @@ __all__ = [
     "EnvironmentRebuilder",
     "File",
     "FileError",
+    "IndexedEnvironment",
     "LocalEnvironment",
+    "MixedEnvironment",
     "Renderer",
     "Samples",
     "Table",

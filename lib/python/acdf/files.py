@@ -9,7 +9,7 @@ Loops run without the interpreter's lock, so several threads may sample at once.
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, NamedTuple, Optional, Union
+from typing import Any, Dict, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -39,7 +39,7 @@ class File:
 
     @property
     def kind(self) -> str:
-        """"environment", "local", "brdf" or "table"."""
+        """"environment", "local", "brdf", "table" or "indexed"."""
         return self._description["kind"]
 
     @property
@@ -206,7 +206,55 @@ class Table(File):
         return self._handle.invert(index, x)
 
 
-_KINDS = {"environment": Environment, "local": LocalEnvironment, "brdf": Brdf, "table": Table}
+class MixedEnvironment:
+    """An environment at some coordinates of an IndexedEnvironment: samples and pdfs as those of an Environment."""
+
+    def __init__(self, handle: _acdf.Mixed):
+        self._handle = handle
+
+    @property
+    def total(self) -> float:
+        """The integral of light over the sphere, linear between maps."""
+        return self._handle.total()
+
+    @property
+    def sun_share(self) -> float:
+        """The share of samples in the cone of the sun; 0 where there is none."""
+        return self._handle.sun_share()
+
+    def sample(self, u: Any, *, out: Optional[Samples] = None) -> Samples:
+        """Samples a direction for each pair of numbers."""
+        return Samples(*self._handle.sample(u, tuple(out or _NEW)))
+
+    def pdf(self, directions: Any, *, out: Optional[np.ndarray] = None) -> np.ndarray:
+        """Pdfs in sr^-1, float32: exactly those of `sample` for what it returned."""
+        return self._handle.pdf(directions, out)
+
+    def invert(self, directions: Any) -> np.ndarray:
+        """Numbers u that sample each direction; NaN where the pdf is 0."""
+        return self._handle.invert(directions)
+
+
+class IndexedEnvironment(File):
+    """Environments along one to three axes, such as the hours of a day (`acdf env --axis`)."""
+
+    @property
+    def axes(self) -> Tuple[str, ...]:
+        """The names of the axes."""
+        return tuple(axis["name"] for axis in self._description["axes"] if axis["role"] == "indexed")
+
+    def at(self, *coordinates: float, **named: float) -> MixedEnvironment:
+        """The environment at coordinates, in the order of the axes or by name: `day.at(9.5)`, `day.at(time=9.5)`. Beyond the
+        first and the last map of an axis these stand.
+        """
+        names = self.axes
+        given = dict(zip(names, coordinates), **named)
+        if len(coordinates) + len(named) != len(names) or set(given) != set(names):
+            raise TypeError(f"at() takes a coordinate for each of the axes {', '.join(names)}")
+        return MixedEnvironment(_acdf.mixed_at(self._handle, [float(given[name]) for name in names]))
+
+
+_KINDS = {"environment": Environment, "local": LocalEnvironment, "brdf": Brdf, "table": Table, "indexed": IndexedEnvironment}
 
 
 def open(source: Union[Path, bytes, bytearray, memoryview], *, tables: bool = True) -> Any:
@@ -214,7 +262,7 @@ def open(source: Union[Path, bytes, bytearray, memoryview], *, tables: bool = Tr
 
     tables: whether tables are made in memory that answer in a fraction of the time.
 
-    Returns an Environment, LocalEnvironment, Brdf or Table. Raises FileError for bytes that are no such file, OSError
+    Returns an Environment, LocalEnvironment, Brdf, Table or IndexedEnvironment. Raises FileError for bytes that are no such file, OSError
     where it cannot be read, MemoryError.
 
     >>> import acdf

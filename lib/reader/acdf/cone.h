@@ -14,6 +14,7 @@ typedef struct AcdfCone {
     double axis[3], side[2][3]; /* unit, at right angles */
     double reach;               /* 1 - cos(radius); 0: there is none */
     double peak;                /* pdf in the middle, sr^-1 */
+    double least;               /* 1 - x of samples, at least: ACDF_BORDER inside the edge */
     uint32_t roots;             /* 0: even */
 } AcdfCone;
 
@@ -21,7 +22,7 @@ ACDF_FN double acdf_cone_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* The cone about a unit axis; the radius is in (0, 1]. */
+/* The cone about a unit axis; the radius is in [2^-10, 1]. */
 ACDF_FN void acdf_cone_about(const double axis[3], double radius, uint32_t roots, AcdfCone* cone) {
     const double sign = axis[2] < 0.0 ? -1.0 : 1.0, a = -1.0 / (sign + axis[2]), b = axis[0] * axis[1] * a;
     const double half = acdf_sine(0.5 * radius);
@@ -35,6 +36,7 @@ ACDF_FN void acdf_cone_about(const double axis[3], double radius, uint32_t roots
     cone->side[1][2] = -axis[1];
     cone->reach = 2.0 * half * half;
     cone->peak = (double)(1u << roots) / (2.0 * ACDF_PI * cone->reach);
+    cone->least = 2.0 * ACDF_BORDER / radius;
     cone->roots = roots;
 }
 
@@ -65,7 +67,7 @@ ACDF_FN void acdf_cone_sample(const AcdfCone* cone, const double u[2], float dir
     double y = 1.0 - u[1], away, sine, side[2];
     uint32_t i;
     for (i = 0; i < cone->roots; ++i) y = sqrt(y);
-    away = cone->reach * (1.0 - (y > 0x1p-20 ? y : 0x1p-20)); /* inside, once it is rounded */
+    away = cone->reach * (1.0 - (y > cone->least ? y : cone->least)); /* inside, once it is rounded */
     sine = sqrt(away * (2.0 - away));
     acdf_sincospi(2.0 * u[0], &side[1], &side[0]);
     for (i = 0; i < 3; ++i)

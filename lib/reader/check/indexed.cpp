@@ -80,8 +80,8 @@ bool is_right_map(const AcdfMap& map, bool sun) {
     for (const float x : map.sun) length += double{x} * double{x};
     const bool known = map.radius > 0.0f;
     return std::isfinite(map.share) && map.share > 0.0f && map.sun_share >= 0.0f && map.sun_share < 1.0f &&
-           map.radius >= 0.0f && map.radius <= 1.0f && (known ? std::fabs(length - 1.0) < 1e-3 : length == 0.0) &&
-           (map.sun_share == 0.0f || (sun && known));
+           (!known || (map.radius >= 0x1p-10f && map.radius <= 1.0f)) && map.radius >= 0.0f &&
+           (known ? std::fabs(length - 1.0) < 1e-3 : length == 0.0) && (map.sun_share == 0.0f || (sun && known));
 }
 
 void check_each_map(const Payload& payload, u64 at, const AcdfMap* maps, const AcdfMapsHeader& header,

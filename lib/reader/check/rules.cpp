@@ -186,7 +186,8 @@ const Rule rules[] = {
      "The coordinates of an indexed axis are finite and rise strictly from its `low` to its `high`."},
     {7022, error, "map",
      "The shares of maps are positive and add up to 1 within 2^-20; `sun_share` is in [0, 1), and 0 where `sun` or "
-     "`radius` is 0; `radius` is in [0, 1]; the direction of a sun is unit where it has a radius, and else 0."},
+     "`radius` is 0; `radius` is 0 or in [2^-10, 1]; the direction of a sun is unit where it has a radius, and "
+     "else 0."},
 
     {8001, error, "brdf-axes",
      "A BRDF has the axes of §11, cos_theta_h of at most 268435456 steps and the others of at most 65536."},

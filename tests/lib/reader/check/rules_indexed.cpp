@@ -106,6 +106,8 @@ std::vector<Case> indexed_cases() {
         {7022, "less_than_none_in_the_sun", map_changed([](MapSpec& m) { m.sun_share = -0.1f; })},
         {7022, "not_a_number_in_the_sun", map_changed([](MapSpec& m) { m.sun_share = NAN; })},
         {7022, "a_radius_of_2", map_changed([](MapSpec& m) { m.radius = 2.0f; })},
+        {7022, "a_tiny_radius", map_changed([](MapSpec& m) { m.radius = 0x1p-11f; })},
+        {7022, "a_radius_below_0", map_changed([](MapSpec& m) { m.radius = -0.25f; })},
         {7022, "no_direction", map_changed([](MapSpec& m) { m.sun[2] = 0.0f; })},
         {7022, "a_direction_without_a_radius", map_changed([](MapSpec& m) { m.radius = m.sun_share = 0.0f; })},
         {7022, "a_sun_without_a_profile", indexed([](IndexedSpec& s) { s.sun = 0; })},
