@@ -9,7 +9,7 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
+/* A cone about an axis. */
 typedef struct AcdfCone {
     double axis[3], side[2][3]; /* unit, at right angles */
     double reach;               /* 1 - cos(radius); 0: there is none */
@@ -17,7 +17,7 @@ typedef struct AcdfCone {
     double least;               /* 1 - x of samples, at least: ACDF_BORDER inside the edge */
     uint32_t roots;             /* 0: even */
 } AcdfCone;
-
+/* The scalar product. */
 ACDF_FN double acdf_cone_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -53,7 +53,7 @@ ACDF_INLINE double acdf_cone_place(const AcdfCone* cone, const float direction[3
     return 0.5 * square / cone->reach;
 }
 
-/* The pdf at such a place, sr^-1. */
+/* The pdf at such an x, sr^-1. */
 ACDF_INLINE double acdf_cone_pdf(const AcdfCone* cone, double place) {
     const double y = 1.0 - place;
     double power = 1.0;
@@ -62,7 +62,7 @@ ACDF_INLINE double acdf_cone_pdf(const AcdfCone* cone, double place) {
     for (i = 0; i < cone->roots; ++i) power = power * power * y;
     return cone->peak * power;
 }
-
+/* The direction of random numbers: u[0] around the axis, u[1] from it. */
 ACDF_FN void acdf_cone_sample(const AcdfCone* cone, const double u[2], float direction[3]) {
     double y = 1.0 - u[1], away, sine, side[2];
     uint32_t i;
@@ -75,7 +75,7 @@ ACDF_FN void acdf_cone_sample(const AcdfCone* cone, const double u[2], float dir
                                sine * (side[0] * cone->side[0][i] + side[1] * cone->side[1][i]));
 }
 
-/* The random numbers of a direction at a place in the cone. */
+/* The random numbers of a direction in the cone, at x. */
 ACDF_FN void acdf_cone_invert(const AcdfCone* cone, const float direction[3], double place, double u[2]) {
     const double d[3] = {direction[0], direction[1], direction[2]};
     const double turn = 0.5 * acdf_atan2pi(acdf_cone_dot(d, cone->side[1]), acdf_cone_dot(d, cone->side[0]));

@@ -42,7 +42,7 @@ typedef struct AcdfTopTile {
     AcdfSpan box[2];
 } AcdfTopTile;
 
-/* What is made when a file is opened: flat words without pointers, offsets in words from the start of this. */
+/* Tables of an open file: flat words without pointers, offsets in words from the start of this. */
 typedef struct AcdfTop {
     uint32_t words; /* of all */
     uint32_t maps, splits;
@@ -192,8 +192,8 @@ ACDF_FN void acdf_mixed_begin(AcdfMixed* sky) {
         }
 }
 
-/* The mixture of the maps around coordinates[axes]. What lies beyond the first or the last is that one; what is not
- * a number is the first. */
+/* The mixture of the maps around coordinates[axes]. The first and the last stand for all beyond, the first for
+ * NaN, too. */
 ACDF_FN void acdf_indexed_at(const AcdfIndexed* file, const double* coordinates, AcdfMixed* out) {
     double between[3], suns[ACDF_MOST_MIXED][3], radii[ACDF_MOST_MIXED], light = 0.0, in_cone = 0.0;
     uint32_t first[3], axis, corner, corners = 1u << file->axes, left;
@@ -245,7 +245,7 @@ ACDF_FN void acdf_indexed_at(const AcdfIndexed* file, const double* coordinates,
 }
 
 /* ---- the tree ------------------------------------------------------------------------------------------- */
-
+/* Steps of both axes. */
 ACDF_INLINE double acdf_steps_in(const AcdfSpan steps[2]) {
     return (double)(steps[0].end[1] - steps[0].end[0]) * (double)(steps[1].end[1] - steps[1].end[0]);
 }
@@ -283,7 +283,7 @@ ACDF_INLINE double acdf_box_scale(const AcdfTop* top, const AcdfGrid* grid, cons
     }
     return (double)grid->columns / (2.0 * ACDF_PI * (double)(box[0].end[1] - box[0].end[0]) * height);
 }
-
+/* The square of a random number on its axis. */
 ACDF_INLINE uint32_t acdf_mixed_square(double u) {
     const uint32_t square = (uint32_t)(u * ACDF_MIXED_SQUARES);
     return square < ACDF_MIXED_SQUARES ? square : ACDF_MIXED_SQUARES - 1u;
@@ -372,7 +372,7 @@ ACDF_INLINE double acdf_mixed_cell(const AcdfMixed* sky, const uint32_t position
 
 /* ---- samples and pdfs ----------------------------------------------------------------------------------- */
 
-/* The pdf of both parts, and the place in the cone. */
+/* The pdf of both parts, and that of the cone. */
 ACDF_INLINE float acdf_mixed_both(const AcdfMixed* sky, const float direction[3], double of_tree, double* in_cone) {
     double pdf = (1.0 - sky->sun_share) * of_tree;
     *in_cone = 0.0;
