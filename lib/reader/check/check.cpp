@@ -267,8 +267,8 @@ void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
 }
 
 // An environment by halvings, or several.
-void check_halved_environment(const Payloads& payloads, u32 kind, const AcdfAllocator& allocator, Report& report,
-                              Parts& parts) {
+void check_halved_environment(const Payloads& payloads, [[maybe_unused]] u32 kind, const AcdfAllocator& allocator,
+                              Report& report, Parts& parts) {
     const Payload& halvings = payloads.of[chunk_halvings];
     if (payloads.of[chunk_bins].data || payloads.of[chunk_tree].data)
         report.add(6035, halvings.at(0), "%s is there, too", payloads.of[chunk_tree].data ? "TREE" : "BINS");
