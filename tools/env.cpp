@@ -123,11 +123,7 @@ std::vector<std::string*> EnvConversion::files() {
 }
 
 bool EnvConversion::takes_all(const std::vector<std::string>& sources) {
-    if (!maps_.given(sources)) {
-        for (const char* option : {"--sun", "--no-sun"})
-            if (given(option)) throw CLI::ValidationError(option, "is for several maps in one file (--axis)");
-        return false;
-    }
+    if (!maps_.given(sources)) return false;
     for (const char* option :
          {"--cells", "--target-variance", "--max-weight", "--fit", "--mis", "--scene", "--faces"})
         if (given(option)) throw CLI::ValidationError(option, "is for a file of one map, without --axis");
@@ -154,6 +150,10 @@ void EnvConversion::check_partner() const {
 }
 
 void EnvConversion::check() {
+    for (const char* option : {"--axis", "--sun", "--no-sun"})
+        if (!maps_.any() && given(option))
+            throw CLI::ValidationError(option,
+                                       "is for several maps in one file: acdf env A B -o FILE --axis time=6,9");
     use_renderer(*command_, renderer_, input_, environment_.target);
     scene_.check(*command_);
     const AcdfFit fit = environment_.fit.fit;

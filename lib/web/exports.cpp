@@ -34,6 +34,7 @@ acdf::DirectionSample sample(const acdf::File& file, const float* at, double u0,
     case ACDF_KIND_BRDF:
         return file.brdf().sample(at, u0, u1);
     case ACDF_KIND_TABLE:
+    case ACDF_KIND_INDEXED:
         break;
     }
     return {};
@@ -48,6 +49,7 @@ float density(const acdf::File& file, const float* at, const float direction[3])
     case ACDF_KIND_BRDF:
         return file.brdf().pdf(at, direction);
     case ACDF_KIND_TABLE:
+    case ACDF_KIND_INDEXED:
         break;
     }
     return 0.0f;

@@ -43,6 +43,9 @@ for frame in 7 8 9; do "$clear_sky" 64 $frame 3 day.000$frame.pfm; done
 "$acdf" env day.000{7,8,9}.pfm -o named.acdf --axis frame=7,8,9 --budget 16KiB --quiet
 cmp frames.acdf named.acdf
 
+"$acdf" diff frames.acdf named.acdf >/dev/null
+("$acdf" diff frames.acdf day.acdf || true) | grep -q "by their bytes alone"
+
 # What is wrong is said in one line.
 refused() {
     local code=0
@@ -53,6 +56,7 @@ refused() {
 expected=1 refused measure day.acdf --against between.pfm
 expected=1 refused sample day.acdf -n 1 --at time=10
 expected=1 refused pdf day.acdf --at time=10,hour=3 samples.csv
+expected=1 refused export day.acdf --target glsl
 expected=1 refused env "no.####.exr" -o none.acdf
 expected=2 refused env "${maps[@]}" -o none.acdf --axis time=7,9,11
 expected=2 refused env day.0007.pfm day.0008.pfm --axis time=7,8

@@ -182,6 +182,7 @@ std::string why_not_compared(const File& a, const File& b) {
         return "one is of kind " + build::kind_name(a.kind()) + ", the other of kind " + build::kind_name(b.kind());
     if (a.kind() == ACDF_KIND_LOCAL && (a.local().has_visibility() || b.local().has_visibility()))
         return "files that store visibility cells are compared by their bytes alone";
+    if (a.kind() == ACDF_KIND_INDEXED) return "files of several maps are compared by their bytes alone";
     if (a.kind() != ACDF_KIND_TABLE) return "";
     const TableView view[2] = {a.table(), b.table()};
     bool same =

@@ -30,7 +30,7 @@ ShaderTables& ShaderTables::operator=(ShaderTables&& other) noexcept {
 
 Status ShaderTables::make(const File& file, ShaderTables& out) noexcept {
     out = ShaderTables();
-    if (file.kind() == ACDF_KIND_TABLE)
+    if (file.kind() == ACDF_KIND_TABLE || file.kind() == ACDF_KIND_INDEXED)
         return none("it is neither an environment nor a local environment nor a BRDF");
     if (!acdf::make_walk(file, out.block_))
         return none("its cells tilt (--fit pdf), too many share their curves, or memory is too little");
