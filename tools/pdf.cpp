@@ -91,7 +91,7 @@ void evaluate_indexed(const File& file, std::istream& in, const PdfArguments& op
     const MixedEnvironment view = chosen_environment(options.file, file, options.at);
     if (options.csv) output.write("x,y,z,pdf\n");
     evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
-        return density_line(direction, options, [&](const float d[3]) { return view.pdf(d); });
+        return pdf_line(direction, options, [&](const float d[3]) { return view.pdf(d); });
     });
 }
 
