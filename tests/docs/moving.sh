@@ -62,5 +62,5 @@ expected=2 refused env "${maps[@]}" -o none.acdf --axis time=7,9,11
 expected=2 refused env day.0007.pfm day.0008.pfm --axis time=7,8
 expected=2 refused env day.0007.pfm day.0008.pfm -o none.acdf --axis time=7,8 --fit cdf
 expected=2 refused env day.0007.pfm -o none.acdf --no-sun
-expected=1 refused env day.0007.pfm sky-7-2.pfm -o none.acdf --axis time=7,8
+expected=1 refused env day.0007.pfm sky-7-2.pfm -o none.acdf --axis time=7,8 --quiet
 [ ! -e none.acdf ]
