@@ -20,7 +20,7 @@ done
 
 shown=()
 for hour in 6.2 9.5 13; do
-    "$acdf" plot day.acdf -o $hour.png --at time=$hour,turbidity=3 --width 512 --range 1e-3:1000 --quiet
+    "$acdf" plot day.acdf -o $hour.png --at time=$hour,turbidity=3 --width 512 --range 5e-3:2 --quiet
     shown+=($hour.png)
 done
 oiiotool --nosoftwareattrib "${shown[@]}" --mosaic 3x1 -d uint8 -o "$root/docs/figures/moving.png"

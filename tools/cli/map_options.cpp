@@ -72,7 +72,7 @@ void MapOptions::add(CLI::App& command) {
         ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->group(group);
-    command.add_flag("--no-sun", no_sun_, "Store a sun as any other light: between maps it is in two places")
+    command.add_flag("--no-sun", no_sun_, "Store a sun as any other light: between maps there are two of it")
         ->group(group);
 }
 
