@@ -1,5 +1,6 @@
 /* The C interface of the reader: open a file here, then sample and evaluate with inline functions or linked ones.
- * acdf/sample.h, local.h, brdf.h, table.h and indexed.h are inlined. Languages without a C compiler can call acdf/linked.h.
+ * acdf/sample.h, local.h, brdf.h, table.h and indexed.h are inlined. Languages without a C compiler can call
+ * acdf/linked.h.
  *
  *   AcdfError error;
  *   AcdfFile* file = acdf_open("probe.acdf", &error);
