@@ -14,7 +14,7 @@ constexpr double kPieceStep = 0.02; // radians across which light in a cell has 
 /// where the partner has few.
 constexpr double kLeastOfCdf = 0.025;
 constexpr double kBounded = 150.0; // weights that need no such samples
-constexpr double kSpacing = 2.45; // the distance of neighbouring bins, times the subdivisions
+constexpr double kSpacing = 2.45;  // the distance of neighbouring bins, times the subdivisions
 
 /// The mean of the cosines above the horizon of a disc of directions.
 double seen_cosine(double height, double radius) {

@@ -166,7 +166,8 @@ PortalSet make_portals(const Target& target, const std::vector<PortalRectangle>&
     for (std::size_t m = 0; m < out.maps.size(); ++m) {
         const double one = fill(target, out.maps[m], size, &out.sums[m * corners]) / target.total;
         for (std::size_t i = 0; i < out.portals.size(); ++i)
-            if (out.portals[i].map == m && !(one > 0.0 && std::isfinite(one))) refuse(i, "gets no light from outside");
+            if (out.portals[i].map == m && !(one > 0.0 && std::isfinite(one)))
+                refuse(i, "gets no light from outside");
         out.maps[m].unit = static_cast<float>(std::clamp(one, 0x1p-120, 0x1p120));
     }
     return out;

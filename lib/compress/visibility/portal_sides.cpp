@@ -91,7 +91,8 @@ std::vector<PortalRectangle> facing_light(const Target& target, std::vector<Port
             throw std::invalid_argument("no light arrives through " + name +
                                         ": it is closed, or not where the scene is");
         if (leaving.back > kClearly * leaving.front) std::swap(rectangles[i].across, rectangles[i].up);
-        if (!is_lit(target, outside_of(rectangles[i]))) throw std::invalid_argument(name + " gets no light from outside");
+        if (!is_lit(target, outside_of(rectangles[i])))
+            throw std::invalid_argument(name + " gets no light from outside");
     }
     return rectangles;
 }
