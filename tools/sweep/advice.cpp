@@ -129,7 +129,7 @@ void add_time_findings(const Sweep& sweep, Advice& advice, const SweepRow& best)
     for (const BaselineComparison& c : advice.comparisons)
         if (std::isinf(sweep.rows[c.row].relative_variance))
             advice.findings.push_back(capital(sweep.rows[c.row].label) +
-                                      " is biased by itself: it has no pdf where there is light.");
+                                      " is biased if used alone: its pdf is 0 where there is light.");
 }
 
 /// Who wins sample for sample, whatever the time.
@@ -141,8 +141,8 @@ std::string sample_finding(const Sweep& sweep, const SweepRow& best) {
                      short_number(baseline.relative_variance) + ", " + to_readable_size(baseline.bytes) + ")";
     const std::string text =
         " less noisy than this file (relative variance " + short_number(best.relative_variance) + ")";
-    if (names.empty()) return "Sample for sample no baseline is" + text + ".";
-    return "Sample for sample these are" + text + ": " + names + ".";
+    if (names.empty()) return "At equal samples no baseline is" + text + ".";
+    return "At equal samples these are" + text + ": " + names + ".";
 }
 
 /// Another file of acdf's that is not visibly noisy either, and better at equal time.
