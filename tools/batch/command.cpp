@@ -141,7 +141,7 @@ BatchJobs all_jobs(const BatchArguments& options) {
 std::string own_file(const BatchArguments& options, const char* name, const char* mark) {
     const std::string path = (fs::path(options.output) / name).string();
     std::error_code error;
-    if (fs::is_directory(path, error)) throw Failure(path + ": is a folder, but a file is to be written there");
+    if (fs::is_directory(path, error)) throw Failure(path + ": is a folder, but a file must be written there");
     if (options.force || !fs::exists(path, error)) return path;
     const std::vector<std::uint8_t> old = read_bytes(path);
     const std::string_view start(mark);

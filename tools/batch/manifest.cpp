@@ -58,7 +58,7 @@ std::string text_of(const Json& value, const char* key) {
 std::string source_of(const Json& value) {
     constexpr std::size_t faces = 6;
     if (!value.is_array()) return text_of(value, "source");
-    if (value.size() != faces) fail("'source' is to be one file, or six: the faces of a cube");
+    if (value.size() != faces) fail("'source' must be one file, or six: the faces of a cube");
     std::string joined;
     for (const Json& item : value) {
         const std::string file = text_of(item, "source");

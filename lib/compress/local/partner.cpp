@@ -12,7 +12,7 @@ namespace {
 constexpr double kPieceStep = 0.02; // radians across which light in a cell has one cosine
 /// Of the samples that the CDF of all light gives a tile, those that stay at normals which see it at their horizon,
 /// where the partner has few.
-constexpr double kLeastOfCdf = 0.025;
+constexpr double kLeastOfCdf = 0.015;
 constexpr double kBounded = 150.0; // weights that need no such samples
 constexpr double kSpacing = 2.45;  // the distance of neighbouring bins, times the subdivisions
 

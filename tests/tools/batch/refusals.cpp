@@ -11,7 +11,7 @@ TEST_F(BatchCommand, RefusesManifestsBeforeAnythingStarts) {
     write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
     const std::string good = "{\"source\": \"probes/a.pfm\"}\n", at2 = manifest + ":2: ";
     expect_refused(good + "{\"source\": \"probes/a.pfm\", \"colour\": 1}\n", at2 + "has an unknown key 'colour'");
-    expect_refused(good + "{\"source\": []}\n", at2 + "'source' must be a string");
+    expect_refused(good + "{\"source\": []}\n", at2 + "'source' must be one file, or six");
     expect_refused(good + good, at2 + "is the same job as " + manifest + ":1; leave");
     expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"./a.acdf\"}\n", at2 + "is the same job");
     expect_refused(good + "{\"source\": \"probes/a.pfm\", \"options\": {\"cells\": 5}}\n",

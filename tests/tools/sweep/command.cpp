@@ -123,7 +123,7 @@ TEST(SweepCommand, AMeshIsWhereFilesAreCompared) {
     write_text(mesh, "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 1\nv 1 -1 1\nv 1 0 1\nv -1 0 1\n"
                      "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\n");
     const Result made = run_acdf({"sweep", probe, "-o", folder / "out", "--scene", mesh, "--no-timing", "--files",
-                                  "local,visibility", "--budgets", "48KiB", "--quiet"});
+                                  "local,visibility", "--budgets", "128KiB", "--quiet"});
     ASSERT_EQ(made.code, 0) << made.err;
     const auto json = nlohmann::json::parse(read_text(folder / "out/sweep.json"));
     EXPECT_TRUE(json["on_mesh"]);
@@ -136,9 +136,9 @@ TEST(SweepCommand, AMeshIsWhereFilesAreCompared) {
     EXPECT_GT(mis["full_cdf"], 3.0 * mis["visibility"]);
     std::map<std::string, std::string> commands;
     for (const auto& one : json["renderers"]) commands[one["renderer"]] = one["command"];
-    EXPECT_EQ(commands["mis_normal"], "acdf local " + probe + " --budget 48KiB -o tiny.local.acdf");
+    EXPECT_EQ(commands["mis_normal"], "acdf local " + probe + " --budget 128KiB -o tiny.local.acdf");
     EXPECT_EQ(commands["mis_position"],
-              "acdf local " + probe + " --scene " + mesh + " --visibility --budget 48KiB -o tiny.visibility.acdf");
+              "acdf local " + probe + " --scene " + mesh + " --visibility --budget 128KiB -o tiny.visibility.acdf");
     EXPECT_EQ(commands.count("alone"), 0u); // no such file was tried
     const std::string page = read_text(folder / "out/report.html");
     EXPECT_NE(page.find("--scene " + mesh + " --visibility"), std::string::npos);

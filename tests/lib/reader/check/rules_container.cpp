@@ -23,7 +23,7 @@ std::vector<Case> container_cases() {
              return file;
          }},
         {2006, "kind_0", header_field(24, 4, 0)},
-        {2006, "kind_5", header_field(24, 4, 5)},
+        {2006, "kind_6", header_field(24, 4, 6)},
         {2007, "feature_31", header_field(28, 4, 0x80000000)},
         {2008, "first", header_field(40, 4, 1)},
         {2008, "last", header_field(59, 1, 1)},
