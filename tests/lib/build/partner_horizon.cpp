@@ -144,7 +144,7 @@ double largest_of_allowed(const compress::Target& grid, AcdfPartnerKind kind, Ac
     File file;
     EXPECT_TRUE(File::from_memory(made.bytes.data(), made.bytes.size(), file).ok());
     double out = 0.0;
-    for (const build::NormalAccuracy& at : build::measure_normals(file, grid, grazing_normals(grid, 1000))) {
+    for (const build::NormalAccuracy& at : build::measure_normals(file, grid, grazing_normals(grid, 400))) {
         EXPECT_EQ(at.support_violations, 0u);
         if (at.irradiance > 0.0)
             out = std::max(out, at.max_weight / std::max(kMost, kOfCdf * at.max_weight_full_cdf));
