@@ -142,7 +142,10 @@ private:
         const PdfRange ends = figure_range(gain);
         const double most = std::max({ends.high, 1.0 / ends.low, 8.0});
         return figure(name, gain,
-                      {one.spec.text + " over " + base.spec.text, {1.0 / most, most}, ColourMap::diverging, false});
+                      {"gain: variance of " + base.spec.text + " over that of " + one.spec.text,
+                       {1.0 / most, most},
+                       ColourMap::diverging,
+                       false});
     }
     Png kept(const std::string& name, Png png) const {
         if (folder_) folder_->write(name + ".png", png);
