@@ -39,7 +39,7 @@ MixedEnvironment chosen_environment(const std::string& path, const File& file, c
         char* end = nullptr;
         const double number = std::strtod(value.c_str(), &end);
         if (axis >= axes.size() || value.empty() || *end != 0 || !std::isfinite(number))
-            throw Failure(path + ": '" + at[i] + "' is no place on its axes; give " + wanted(axes));
+            throw Failure(path + ": '" + at[i] + "' is not a position on its axes; give " + wanted(axes));
         coordinates[axis] = number;
     }
     for (const double coordinate : coordinates)

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 using namespace acdf_test;
 
