@@ -36,6 +36,11 @@ std::vector<double> numbers_of(const std::string& text, const char* option) {
     return out;
 }
 
+/// sky.####.exr, where no file has this name itself.
+bool is_pattern(const std::string& source) {
+    return fs::path(source).filename().string().find('#') != std::string::npos && !fs::exists(source);
+}
+
 /// The number of a frame: what stands in the place of the #, all digits.
 bool frame_of(const std::string& name, const std::string& before, const std::string& after, std::size_t digits,
               long long& frame) {
@@ -77,9 +82,7 @@ void MapOptions::add(CLI::App& command) {
 }
 
 bool MapOptions::given(const std::vector<std::string>& sources) const {
-    return !axis_texts_.empty() || std::any_of(sources.begin(), sources.end(), [](const std::string& source) {
-        return fs::path(source).filename().string().find('#') != std::string::npos && !fs::exists(source);
-    });
+    return !axis_texts_.empty() || std::any_of(sources.begin(), sources.end(), is_pattern);
 }
 
 void MapOptions::parse_axes() {
@@ -119,7 +122,7 @@ void MapOptions::add_frames(const std::string& pattern) {
 void MapOptions::take(const std::vector<std::string>& sources) {
     parse_axes();
     for (const std::string& source : sources)
-        if (given({source}) && !fs::exists(source) && source.find('#') != std::string::npos) add_frames(source);
+        if (is_pattern(source)) add_frames(source);
         else files_.push_back(source);
     std::size_t count = 1;
     for (const build::MapAxis& axis : axes_) count *= axis.coordinates.size();

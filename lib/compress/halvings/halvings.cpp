@@ -1,5 +1,7 @@
 #include "compress/halvings/halvings.h"
 
+#include "compress/halvings/codes.h"
+
 #include "compress/halvings/bit_writer.h"
 
 #include <acdf/halvings.h>
@@ -15,19 +17,11 @@ namespace {
 /// Of random numbers, on an axis: floats, which have 24 bits, reach every cell of so many.
 constexpr std::uint32_t kStepsOfFloats = 1u << (31 - 24);
 
-/// The shares that codes stand for.
-std::vector<std::uint32_t> shares_of(std::uint32_t code_bits) {
-    std::vector<std::uint32_t> shares(std::size_t{1} << code_bits);
-    for (std::uint32_t code = 0; code < shares.size(); ++code) shares[code] = acdf_halving_share(code, code_bits);
-    return shares;
-}
-
 class Quantiser {
 public:
     Quantiser(const HalvedSums& sums, const GrownTree& grown, std::size_t leaves, std::uint32_t code_bits,
               double integral)
-        : sums_(sums), grown_(grown), leaves_(leaves), integral_(integral), shares_(shares_of(code_bits)),
-          last_code_((1u << code_bits) - 1) {
+        : sums_(sums), grown_(grown), leaves_(leaves), integral_(integral), codes_(code_bits) {
         out_.halvings.code_bits = code_bits;
         out_.halvings.axes.reserve(2 * leaves - 1);
         out_.halvings.codes.reserve(leaves - 1);
@@ -76,36 +70,16 @@ private:
         const auto axis = static_cast<std::size_t>(node.axis);
         const AcdfSpan steps = part.steps[axis];
         const double a = weights_[node.lower], b = weights_[node.lower + 1];
-        const bool both = a > 0.0 && b > 0.0;
-        if (both && steps.end[1] - steps.end[0] < 2 * least_steps_) return false;
-        const std::uint32_t code = both ? best_code(steps, a, b) : a > 0.0 ? last_code_ : 0;
+        const std::uint32_t wide = steps.end[1] - steps.end[0];
+        if (a > 0.0 && b > 0.0 && wide < 2 * least_steps_) return false;
+        const std::uint32_t code = codes_.best(wide, a, b, least_steps_, least_steps_);
         lower = upper = part;
         lower.node = node.lower;
         upper.node = node.lower + 1;
-        lower.steps[axis].end[1] = upper.steps[axis].end[0] = threshold(steps, code);
+        lower.steps[axis].end[1] = upper.steps[axis].end[0] = steps.end[0] + codes_.lower(wide, code);
         out_.halvings.axes.push_back(static_cast<std::int8_t>(sums_.grid().axes[axis]));
         out_.halvings.codes.push_back(static_cast<std::uint16_t>(code));
         return true;
-    }
-
-    std::uint32_t threshold(const AcdfSpan& steps, std::uint32_t code) const {
-        return acdf_halving_threshold(&steps, code, out_.halvings.code_bits, shares_[code]);
-    }
-
-    /// The code that makes a^2 / p + b^2 / (1 - p) smallest, of those that leave both halves enough steps.
-    std::uint32_t best_code(const AcdfSpan& steps, double a, double b) const {
-        const std::uint32_t wide = steps.end[1] - steps.end[0];
-        const auto lower = [&](std::uint32_t code) { return threshold(steps, code) - steps.end[0]; };
-        const auto loss = [&](std::uint32_t code) {
-            return a * (a / lower(code)) + b * (b / (wide - lower(code)));
-        };
-        const auto share = static_cast<std::uint32_t>(a / (a + b) * 0x1p31);
-        const auto above = std::lower_bound(shares_.begin(), shares_.end(), share) - shares_.begin();
-        std::uint32_t code = std::clamp(static_cast<std::uint32_t>(above), 1u, last_code_ - 1);
-        if (code > 1 && loss(code - 1) < loss(code)) --code;
-        while (code + 1 < last_code_ && lower(code) < least_steps_) ++code;
-        while (code > 1 && wide - lower(code) < least_steps_) --code;
-        return code;
     }
 
     void end(const Part& part) {
@@ -126,8 +100,7 @@ private:
     double integral_;
     /// A bound on weights needs the smallest shares as they are: all 31 bits of random numbers.
     std::uint32_t least_steps_ = integral_ > 0.0 ? 1 : kStepsOfFloats;
-    std::vector<std::uint32_t> shares_;
-    std::uint32_t last_code_;
+    HalvingCodes codes_;
     std::vector<double> weights_;
     Quantised out_;
 };

@@ -2,6 +2,7 @@
 
 #include "compress/halvings/bit_writer.h"
 #include "compress/halvings/code_bits.h"
+#include "compress/halvings/codes.h"
 #include "compress/indexed/growth.h"
 
 #include <acdf/halvings.h>
@@ -18,44 +19,6 @@ constexpr std::uint32_t kSharedBits = 8;               // of the codes that maps
 constexpr std::uint32_t kOwnBits[] = {7, 6, 8};        // tried, for those of each map
 constexpr double kOwnParts[] = {0.8, 0.97, 0.6, 0.35}; // tried, of the bytes, for them
 constexpr std::uint32_t kLeastSteps = 1u << 7;         // floats reach every cell of so many
-
-std::vector<std::uint32_t> shares_of(std::uint32_t code_bits) {
-    std::vector<std::uint32_t> shares(std::size_t{1} << code_bits);
-    for (std::uint32_t code = 0; code < shares.size(); ++code) shares[code] = acdf_halving_share(code, code_bits);
-    return shares;
-}
-
-/// The code of a share of steps `wide` that makes a^2 / p + b^2 / (1 - p) smallest, of those that leave the halves
-/// at least so many.
-class Codes {
-public:
-    explicit Codes(std::uint32_t code_bits) : bits_(code_bits), shares_(shares_of(code_bits)) {}
-
-    std::uint32_t lower(std::uint32_t wide, std::uint32_t code) const {
-        const AcdfSpan steps = {{0, wide}};
-        return wide > 0 ? acdf_halving_threshold(&steps, code, bits_, shares_[code]) : 0;
-    }
-    std::uint32_t last() const { return (1u << bits_) - 1; }
-    std::uint32_t best(std::uint32_t wide, double a, double b, double least_a, double least_b) const {
-        if (!(a > 0.0)) return 0;
-        if (!(b > 0.0)) return last();
-        const auto loss = [&](std::uint32_t code) {
-            const double p = lower(wide, code), q = wide - p;
-            return a * (a / p) + b * (b / q);
-        };
-        const auto share = static_cast<std::uint32_t>(a / (a + b) * 0x1p31);
-        const auto above = std::lower_bound(shares_.begin(), shares_.end(), share) - shares_.begin();
-        std::uint32_t code = std::clamp(static_cast<std::uint32_t>(above), 1u, last() - 1);
-        if (code > 1 && loss(code - 1) < loss(code)) --code;
-        while (code + 1 < last() && lower(wide, code) < least_a) ++code;
-        while (code > 1 && wide - lower(wide, code) < least_b) --code;
-        return code;
-    }
-
-private:
-    std::uint32_t bits_;
-    std::vector<std::uint32_t> shares_;
-};
 
 /// From a tree that is grown to codes.
 class Storing {
@@ -112,7 +75,7 @@ private:
 
     /// The shared tree, in preorder.
     void descend() {
-        const Codes codes(kSharedBits);
+        const HalvingCodes codes(kSharedBits);
         std::vector<Part> open{{0, kNone, {{{0, ACDF_STEPS}}, {{0, ACDF_STEPS}}}, 1.0}};
         while (!open.empty()) {
             Part part = open.back();
@@ -201,7 +164,7 @@ private:
 
     const IndexedSums& sums_;
     const IndexedGrowth& grown_;
-    Codes own_;
+    HalvingCodes own_;
     std::vector<double> weights_;
     std::vector<Tile> tiles_;
     std::vector<std::pair<std::uint32_t, bool>> order_; ///< nodes at the top in preorder; whether they are halved
