@@ -167,13 +167,13 @@ std::string LocalConversion::scene_text() const {
 }
 
 std::string LocalConversion::option_text() const {
-    builder::LocalOptions told = local_;
+    builder::LocalOptions written = local_;
     if (scene_.given()) {
-        told.normals = {{}}; // any: only the text names them
-        told.normals_text = scene_text();
+        written.normals = {{}}; // any number: the text names the scene alone
+        written.normals_text = scene_text();
     }
-    told.source.reading = reading_text(input_);
-    return builder::option_text(told);
+    written.source.reading = reading_text(input_);
+    return builder::option_text(written);
 }
 
 /// The options with the normals of the scene.
@@ -304,8 +304,8 @@ Converted LocalConversion::convert(const Listener& listener) {
                       gain(result));
         listener.note(text);
     }
-    std::string told = json_text(report(loaded, result)), summary = summary_of(result);
-    return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), std::move(summary)};
+    std::string json = json_text(report(loaded, result)), summary = summary_of(result);
+    return {std::move(result.bytes), result.accuracy.relative_variance, std::move(json), std::move(summary)};
 }
 
 void LocalConversion::add_bins(CLI::App& command) {

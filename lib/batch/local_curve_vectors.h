@@ -15,7 +15,7 @@ namespace {
 
 /// A lane in curves.
 struct alignas(64) CurveLane {
-    double u[2]; // of samples: what is left of the random numbers
+    double u[2]; // of samples: the random numbers, rescaled to [0, 1) in the cell
     AcdfRange range[2];
     double inside; // product of the curves
     const std::uint8_t* at;

@@ -175,10 +175,10 @@ ACDF_LANE Floats cell_pdfs(const AcdfLocal& local, const Cells& cells, const Box
 ACDF_LANE std::uint64_t pdfs_of(const AcdfLocal& local, const Cells& cells, const Boxes& done, float* out) {
     std::uint64_t lost = 0;
     for (std::size_t first = 0; first < cells.count; first += kLanes) {
-        alignas(64) float told[kLanes];
-        *(Floats*)told = cell_pdfs(local, cells, done, first);
+        alignas(64) float pdfs[kLanes];
+        *(Floats*)pdfs = cell_pdfs(local, cells, done, first);
         for (std::size_t i = 0; i < kLanes && first + i < cells.count; ++i) {
-            out[first + i] = told[i];
+            out[first + i] = pdfs[i];
             lost |= (std::uint64_t)done.lost[first + i] << (first + i);
         }
     }

@@ -27,7 +27,7 @@ public:
     bool any() const { return !axes_.empty(); }
     Converted convert(const input::ProbeOptions& reading, const builder::TargetOptions& target,
                       std::uint64_t budget, AcdfCodec codec, const Listener& listener) const;
-    /// As the file tells.
+    /// The options as the file stores them.
     std::string text(const build::IndexedOptions& options) const { return build::option_text(options); }
     build::IndexedOptions options(const input::ProbeOptions& reading, const builder::TargetOptions& target,
                                   std::uint64_t budget, AcdfCodec codec) const;

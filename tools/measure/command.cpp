@@ -152,7 +152,8 @@ void measure_indexed(const MeasureArguments& options, const File& file) {
         return;
     }
     std::printf("%s against %s\n", printable(options.file).c_str(), printable(options.source).c_str());
-    std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
+    std::printf("  relative variance      %.6g   of one sample; the mean of n samples has 1/n of it\n",
+                a.relative_variance);
     std::printf("    noise                %s   at 16, 64, 256 samples; of the light's sum, not of a surface\n",
                 noise_texts(a.relative_variance).c_str());
     std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);

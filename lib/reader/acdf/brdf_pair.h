@@ -49,8 +49,8 @@ ACDF_INLINE float acdf_brdf_pair_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* v
 
 #ifdef ACDF_BRDF_GUESSES
 
-/* A traversal with two rows, as in acdf_blend_sample: what is left of the random numbers, of the rows' weights,
- * their sum, twice, and what part of each row is left. */
+/* A traversal with two rows, as in acdf_blend_sample: the rescaled random numbers, the rows' weights in
+ * the node, their sum, twice, and the part of each row that the node has. */
 typedef struct AcdfPairWalk {
     __m128d x, weight, chosen, part;
 } AcdfPairWalk;

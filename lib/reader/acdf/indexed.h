@@ -250,7 +250,7 @@ ACDF_INLINE double acdf_steps_in(const AcdfSpan steps[2]) {
     return (double)(steps[0].end[1] - steps[0].end[0]) * (double)(steps[1].end[1] - steps[1].end[0]);
 }
 
-/* What is left of random numbers at the root of a tile becomes that of a cell in it. Returns the cell's share. */
+/* Rescales random numbers of a tile to those of the cell that they lead to. Returns the cell's share. */
 ACDF_OUTLINE_ON_CPU double acdf_tile_descend(const AcdfTop* top, const AcdfTopTile* tile, double u[2],
                                              AcdfSpan box[2]) {
     AcdfSpan steps[2];
@@ -289,8 +289,8 @@ ACDF_INLINE uint32_t acdf_mixed_square(double u) {
     return square < ACDF_MIXED_SQUARES ? square : ACDF_MIXED_SQUARES - 1u;
 }
 
-/* The cell that u[2] lead to; u becomes what is left of them in it. Returns its pdf. On its way u[axis] is
- * x[axis] / of[axis]: a division a level would be waited for. */
+/* The cell that u[2] lead to; u is rescaled to [0, 1] in it. Returns its pdf. Until then u[axis] is kept as
+ * x[axis] / of[axis], as a division at each level would be slow. */
 ACDF_INLINE double acdf_mixed_descend(const AcdfMixed* sky, double u[2], AcdfSpan box[2]) {
     const AcdfTop* top = sky->top;
     const AcdfTopSplit* splits = ACDF_TOP_ARRAY(AcdfTopSplit, top, top->top);

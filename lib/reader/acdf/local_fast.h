@@ -142,7 +142,7 @@ ACDF_INLINE AcdfSampledBrightTile acdf_local_facet_bright_tile(const AcdfLocal* 
 }
 
 /* The bright tile that x of the sum of weights samples at a point, of which none is known but a facet if `weighed`
- * is 0; what is left of x as a number in [0, 1]. */
+ * is 0; x is rescaled to [0, 1]. */
 ACDF_INLINE AcdfSampledBrightTile acdf_local_sample_fast_bright_tile(const AcdfLocal* local,
                                                                      const AcdfLocalPoint* point, const int weighed,
                                                                      double x, double* u) {
@@ -228,7 +228,7 @@ ACDF_INLINE float acdf_local_fast_cell_pdf(const AcdfLocal* local, const AcdfGri
     return acdf_local_fast_at_least(local, grid, range, share, huge < 1.17549435e-38 ? huge : 1.17549435e-38);
 }
 
-/* The direction that what is left of the random numbers picks in a cell of such a probability. */
+/* The direction that rescaled random numbers lead to in a cell of such a probability. */
 ACDF_INLINE AcdfDirectionSample acdf_local_fast_direction_sample(const AcdfLocal* local, const AcdfGrid* grid,
                                                                  const AcdfRange range[2], const double u[2],
                                                                  const AcdfFastShare* share) {

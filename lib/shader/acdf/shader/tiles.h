@@ -3,7 +3,7 @@
  * (acdf/shader/tables.h) makes. One text for processors and for shaders of every language (acdf/dialect.h).
  *
  * Weights of rows and sums are whole numbers, as the reader has them. A list of sums is halved until one is left,
- * as trees are traversed (acdf/shader/tree.h): what is left of random numbers is exact, and borders are where
+ * as trees are traversed (acdf/shader/tree.h): random numbers are rescaled exactly, and borders are where
  * floats put them. */
 #ifndef ACDF_SHADER_TILES_H
 #define ACDF_SHADER_TILES_H
@@ -91,7 +91,7 @@ ACDF_FN1(ACDF_U32, acdf_tiles_whole, AcdfTileSums, sums) {
     return (sums.weight0 + sums.weight1 + sums.weight2) * ACDF_SELECT(sums.wide != 0u, 32767u, 255u);
 }
 
-/* Which number was sampled, and what is left of the random number. */
+/* Which number was sampled, and the random number rescaled to [0, 1]. */
 ACDF_STRUCT_BEGIN(AcdfTileSample)
 ACDF_FIELD(ACDF_U32, i)
 ACDF_FIELD(ACDF_U32, at)
