@@ -19,7 +19,7 @@
 namespace acdf::builder {
 namespace {
 
-using compress::MovingSize;
+using compress::TreeSize;
 
 compress::Description describe(std::uint32_t width, std::uint32_t height, const EnvironmentOptions& given,
                                Projection projection) {
@@ -41,15 +41,12 @@ compress::Description describe(std::uint32_t width, std::uint32_t height, const 
     return out;
 }
 
-std::vector<MovingSize> sizes_for(const Goal& goal, const compress::Description& description,
-                                  std::uint64_t texels) {
+std::vector<TreeSize> sizes_for(const Goal& goal, const compress::Description& description, std::uint64_t texels) {
     const auto leaves = [&](std::uint64_t wanted) { return static_cast<std::size_t>(std::min(wanted, texels)); };
     if (goal.kind == Goal::Kind::cells) return {{compress::kUsualCodeBits, leaves(goal.cells)}};
     const std::uint64_t room = compress::halvings_room(description, goal.budget);
-    std::vector<MovingSize> out;
-    for (const std::uint32_t bits : {12u, 10u, 9u, 8u})
-        if (const std::size_t most = compress::leaves_within(room, bits); most > 0)
-            out.push_back({bits, leaves(most)});
+    std::vector<TreeSize> out = compress::sizes_within(room, {8, 9, 10, 12});
+    for (TreeSize& size : out) size.leaves = leaves(size.leaves);
     if (out.empty())
         throw std::runtime_error("a size of " + std::to_string(goal.budget) + " bytes is out of reach");
     return out;
@@ -100,10 +97,16 @@ FastRebuild::FastRebuild(std::uint32_t width, std::uint32_t height, const Enviro
       uniform_if_black_(options.target.uniform_if_black), cells_(options.goal.kind == Goal::Kind::cells),
       description_(describe(width, height, options, projection)),
       sizes_(sizes_for(options.goal, description_, std::uint64_t{width} * height)),
-      sums_(shape_of(width, height, options, projection)), growth_(sizes_), codes_(sizes_.back().leaves),
+      sums_(shape_of(width, height, options, projection)), growth_(sizes_),
+      coder_({1, 0}), // columns are axis 0 of the file
       bad_(std::size_t{width} * height), bad_of_row_(height),
       described_(compress::description_payload(description_)),
-      metadata_(compress::metadata_payload(description_.metadata)) {}
+      metadata_(compress::metadata_payload(description_.metadata)) {
+    const std::size_t leaves = sizes_.back().leaves;
+    growth_.reserve();
+    coder_.reserve(leaves);
+    chunk_.reserve(compress::halvings_bytes(leaves, compress::kAxisBits, compress::kMostCodeBits) + 8);
+}
 
 void FastRebuild::reserve(Frame& frame) const {
     const std::size_t leaves = sizes_.back().leaves, squares = std::min<std::size_t>(leaves, 1 << 14);
@@ -185,42 +188,40 @@ BadTexels FastRebuild::bad() const {
     return out;
 }
 
-/// Chunk HALV.
-const std::vector<std::uint8_t>& FastRebuild::fitted(const compress::Loop& loop, Gate& gate, Frame& frame) {
+const compress::Halvings& FastRebuild::fitted(const compress::Loop& loop, Gate& gate, Frame& frame) {
     if (!(sums_.largest() > 0.0f)) return even_light(frame);
     description_.total = sums_.total();
     growth_.run(sums_, loop, [&gate](double share) { gate.tell(0.6 + 0.3 * share, "fitting"); });
-    const auto& chunk = codes_.store(sums_, growth_, code_bits());
-    frame.relative_variance = codes_.relative_variance();
-    return chunk;
+    const compress::Halvings& tree = coder_.code(sums_, growth_, growth_.leaves(), code_bits());
+    frame.relative_variance = coder_.relative_variance();
+    return tree;
 }
 
 /// Of as many cells as were asked for: more bits where rounding would count.
 std::uint32_t FastRebuild::code_bits() const {
-    std::uint32_t bits = growth_.code_bits();
-    while (cells_ && bits < 10 && growth_.variance(sums_) < 4.0 * compress::predicted_loss(growth_.leaves(), bits))
-        ++bits;
-    return bits;
+    const std::size_t leaves = growth_.leaves();
+    return cells_ ? compress::enough_code_bits(leaves, sums_.variance(growth_.cost(leaves))) : growth_.code_bits();
 }
 
-const std::vector<std::uint8_t>& FastRebuild::even_light(Frame& frame) {
+const compress::Halvings& FastRebuild::even_light(Frame& frame) {
     if (!uniform_if_black_)
         throw build::NoEnergy("the map is black in the channels asked for, so there is nothing to sample");
     const compress::ChannelWeights& w = target_.weights;
     const double sum = target_.channels == ACDF_CHANNELS_LARGEST ? 1.0 : w.r + w.g + w.b;
     description_.total = 4.0 * ACDF_PI * sum * double{std::numeric_limits<float>::min()};
     frame.relative_variance = 0.0;
-    return codes_.store_leaf();
+    return coder_.leaf();
 }
 
-void FastRebuild::store(const std::vector<std::uint8_t>& chunk, Frame& frame) {
+void FastRebuild::store(const compress::Halvings& tree, Frame& frame) {
+    compress::halvings_chunk(tree, chunk_);
     std::memcpy(described_.data() + offsetof(AcdfDescription, total), &description_.total,
                 sizeof description_.total);
     const auto view = [](std::uint32_t type, std::uint32_t flags, const std::vector<std::uint8_t>& of) {
         return compress::ChunkView{type, flags, ACDF_CODEC_NONE, of.size(), of.data(), of.size()};
     };
     const compress::ChunkView chunks[] = {view(ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_FLAG_CRITICAL, described_),
-                                          view(ACDF_CHUNK_HALVINGS, ACDF_CHUNK_FLAG_CRITICAL, chunk),
+                                          view(ACDF_CHUNK_HALVINGS, ACDF_CHUNK_FLAG_CRITICAL, chunk_),
                                           view(ACDF_CHUNK_METADATA, 0, metadata_)};
     frame.bytes.resize(compress::assembled_bytes(chunks, std::size(chunks)));
     compress::assemble(ACDF_KIND_ENVIRONMENT, chunks, std::size(chunks), frame.bytes.data());

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "build/builder/guard.h"
-#include "compress/moving/codes.h"
+#include "compress/halvings/coder.h"
+#include "compress/moving/sums.h"
 
 #include <acdf/builder.h>
 
@@ -88,21 +89,21 @@ private:
     void read(const Pixels& pixels, const Region& region, const compress::Loop& loop, Gate& gate);
     void read_row(const Pixels& pixels, const Region& region, std::uint32_t y);
     BadTexels bad() const;
-    const std::vector<std::uint8_t>& fitted(const compress::Loop& loop, Gate& gate, Frame& frame);
+    const compress::Halvings& fitted(const compress::Loop& loop, Gate& gate, Frame& frame);
     std::uint32_t code_bits() const;
-    const std::vector<std::uint8_t>& even_light(Frame& frame);
-    void store(const std::vector<std::uint8_t>& chunk, Frame& frame);
+    const compress::Halvings& even_light(Frame& frame);
+    void store(const compress::Halvings& tree, Frame& frame);
 
     compress::TargetOptions target_;
     bool refuse_bad_, uniform_if_black_, cells_;
     compress::Description description_;
-    std::vector<compress::MovingSize> sizes_;
+    std::vector<compress::TreeSize> sizes_;
     compress::MovingSums sums_;
-    compress::MovingGrowth growth_;
-    compress::MovingCodes codes_;
+    compress::HalvedGrowth growth_;
+    compress::TreeCoder coder_;
     std::vector<std::uint8_t> bad_;        ///< a texel each: 1 NaN, 2 infinite, 3 negative
     std::vector<std::uint8_t> bad_of_row_; ///< whether a row has any
-    std::vector<std::uint8_t> described_, metadata_;
+    std::vector<std::uint8_t> described_, metadata_, chunk_;
     bool complete_ = false; ///< whether the sums are those of the last frame
 };
 

@@ -18,7 +18,6 @@ namespace {
 constexpr std::uint32_t kSharedBits = 8;               // of the codes that maps share
 constexpr std::uint32_t kOwnBits[] = {7, 6, 8};        // tried, for those of each map
 constexpr double kOwnParts[] = {0.8, 0.97, 0.6, 0.35}; // tried, of the bytes, for them
-constexpr std::uint32_t kLeastSteps = 1u << 7;         // floats reach every cell of so many
 
 /// From a tree that is grown to codes.
 class Storing {
@@ -52,8 +51,8 @@ private:
     void add_shared_weights() {
         weights_.assign(grown_.nodes.size(), 0.0);
         for (std::size_t i = weights_.size(); i-- > 0;) {
-            const IndexedNode& node = grown_.nodes[i];
-            weights_[i] = node.lower ? weights_[node.lower] + weights_[node.lower + 1] : node.cost;
+            const HalvedNode& node = grown_.nodes[i];
+            weights_[i] = node.lower ? weights_[node.lower] + weights_[node.lower + 1] : double{node.cost};
         }
         // Below a tile costs are roots: the tile as a whole weighs what its maps cost.
         for (std::size_t i = 2 * grown_.top + 1; i-- > 0;) {
@@ -80,10 +79,10 @@ private:
         while (!open.empty()) {
             Part part = open.back();
             open.pop_back();
-            const IndexedNode& node = grown_.nodes[part.node];
-            const auto axis = static_cast<std::size_t>(std::max<std::int8_t>(node.axis, 0));
+            const HalvedNode& node = grown_.nodes[part.node];
+            const std::size_t axis = node.axis == 1 ? 1 : 0;
             const std::uint32_t wide = part.steps[axis].end[1] - part.steps[axis].end[0];
-            const bool halved = node.lower != 0 && weights_[part.node] > 0.0 && wide >= 2 * kLeastSteps;
+            const bool halved = node.lower != 0 && weights_[part.node] > 0.0 && wide >= 2 * kStepsOfFloats;
             const bool own = halved && is_own(part.node);
             if (part.tile == kNone && !own) {
                 part.tile = static_cast<std::uint32_t>(tiles_.size());
@@ -98,9 +97,9 @@ private:
             }
             if (own) order_.push_back({part.node, true});
             const std::uint32_t code =
-                codes.best(wide, weights_[node.lower], weights_[node.lower + 1], kLeastSteps, kLeastSteps);
+                codes.best(wide, weights_[node.lower], weights_[node.lower + 1], kStepsOfFloats, kStepsOfFloats);
             const std::uint32_t lower = codes.lower(wide, code);
-            out_.halvings.axes.push_back(static_cast<std::int8_t>(sums_.shape().grid().axes[axis]));
+            out_.halvings.axes.push_back(static_cast<std::int8_t>(sums_.file_axis(axis)));
             out_.halvings.codes.push_back(static_cast<std::uint16_t>(code));
             out_.has_codes.push_back(own);
             Part half[2] = {part, part};
@@ -139,7 +138,7 @@ private:
             --tile;
             moments[tile] = moment_of(map, tiles_[tile]);
             weights[node] = std::sqrt(moments[tile]);
-            lit[node] = weights[node] > 0.0 ? kLeastSteps : 0.0;
+            lit[node] = weights[node] > 0.0 ? kStepsOfFloats : 0.0;
         }
         std::vector<std::uint32_t> steps(weights.size());
         steps[0] = ACDF_STEPS;
@@ -158,7 +157,7 @@ private:
             steps[lower] = own_.lower(wide, code);
             steps[lower + 1] = wide - steps[lower];
         }
-        const double weight = sums_.weight(map);
+        const double weight = sums_.weight_of(map);
         return moment / weight - weight; // costs have the weight once, their squares twice
     }
 

@@ -1,6 +1,6 @@
 #include "compress/moving/light.h"
 
-#include "compress/moving/kernels.h"
+#include "compress/halvings/kernels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "compress/moving/loop.h"
+#include "compress/halvings/loop.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

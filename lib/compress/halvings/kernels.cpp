@@ -1,4 +1,4 @@
-#include "compress/moving/kernels.h"
+#include "compress/halvings/kernels.h"
 
 #include "compress/widths.h"
 
@@ -68,6 +68,15 @@ ACDF_WIDTHS void add_squares(const float* light, std::size_t count, float unit, 
     for (std::size_t i = 0; i < count; ++i) {
         const float scaled = light[i] * unit, square = out[i] + scaled * scaled * measure;
         const float least = light[i] > 0.0f ? kLeast : 0.0f;
+        out[i] = square > least ? square : least;
+    }
+}
+
+ACDF_WIDTHS void squares_of(const float* values, const float* measure, std::size_t count, float unit,
+                            float row_measure, float* out) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const float scaled = values[i] * unit, square = scaled * scaled * (row_measure * measure[i]);
+        const float least = values[i] > 0.0f ? kLeast : 0.0f;
         out[i] = square > least ? square : least;
     }
 }

@@ -7,6 +7,12 @@
 
 namespace acdf::compress {
 
+/// Of the cache.
+constexpr std::size_t kFloatsOfLine = 16;
+constexpr std::size_t whole_lines(std::size_t floats) {
+    return (floats + kFloatsOfLine - 1) / kFloatsOfLine * kFloatsOfLine;
+}
+
 /// Whether any value may be NaN, infinite or negative (-0 among them).
 bool may_be_bad(const float* values, std::size_t count);
 /// out[i] = w[0] rgb[3 i] + w[1] rgb[3 i + 1] + w[2] rgb[3 i + 2].
@@ -29,6 +35,10 @@ void halve_row(const float* pairs, std::size_t count, float* out);
 /// Adds to `out` the squares of light, times `unit`, times `measure`; at least the smallest normal number where
 /// there is light.
 void add_squares(const float* light, std::size_t count, float unit, float measure, float* out);
+
+/// out[i] = (values[i] unit)^2 row_measure measure[i]; at least the smallest normal number where there is a value.
+void squares_of(const float* values, const float* measure, std::size_t count, float unit, float row_measure,
+                float* out);
 
 /// A row as bilinear lookups see it. Within a texel the row is linear from the middle c to both sides, so that the
 /// mean over the texel of the product of two rows is the scalar product of three numbers of each. With s the mean
