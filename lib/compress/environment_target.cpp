@@ -218,7 +218,7 @@ Target EnvironmentTarget::nearest() {
     target.values = std::move(values_);
     std::vector<double> row_total(rows_);
     parallel_for(std::uint32_t{0}, rows_, [&](std::uint32_t r) {
-        Sum sum;
+        PlainerSum sum;
         for (std::uint32_t c = 0; c < columns_; ++c) sum.add(double{target.row(r)[c]} * target.column_measure[c]);
         row_total[r] = sum.value() * target.row_measure[r];
     });
@@ -244,7 +244,7 @@ Target EnvironmentTarget::moments() {
         std::vector<double> square(columns_, 0.0), peak(columns_, 0.0);
         for (std::size_t plane = 0; plane < planes_; ++plane) {
             bilinear ? rows.add(plane, r, moments) : nearest_row(f, plane, r, moments);
-            Sum sum;
+            PlainerSum sum;
             for (std::uint32_t c = 0; c < columns_; ++c) {
                 sum.add(moments.mean[c] * target.column_measure[c]);
                 target.means[plane][std::size_t{r} * columns_ + c] = static_cast<float>(moments.mean[c]);

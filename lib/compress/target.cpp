@@ -72,7 +72,7 @@ double integral(const Target& target) {
     Sum total;
     for (std::uint32_t r = 0; r < target.rows; ++r) {
         const float* row = target.row(r);
-        Sum sum;
+        PlainerSum sum;
         for (std::uint32_t c = 0; c < target.columns; ++c) sum.add(row[c] * target.column_measure[c]);
         total.add(sum.value() * target.row_measure[r]);
     }

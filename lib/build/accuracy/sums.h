@@ -10,7 +10,7 @@ namespace acdf::build {
 
 /// Sums over cells. Each texel's terms are added to those of the cells before it.
 struct Sums {
-    compress::Sum variance, square_error, kl;
+    compress::PlainerSum variance, square_error, kl;
     double max_weight = 0.0;
     std::uint64_t violations = 0;
 
