@@ -94,6 +94,7 @@ typedef enum AcdfHeuristic {
 #define ACDF_CHUNK_PORTALS ACDF_FOURCC('P', 'O', 'R', 'T')
 #define ACDF_CHUNK_HALVINGS ACDF_FOURCC('H', 'A', 'L', 'V')
 #define ACDF_CHUNK_MAPS ACDF_FOURCC('M', 'A', 'P', 'S')
+#define ACDF_CHUNK_NORMALS ACDF_FOURCC('N', 'O', 'R', 'M')
 
 #define ACDF_CHUNK_FLAG_CRITICAL 1u
 
@@ -190,6 +191,17 @@ typedef struct AcdfMapsHeader {
 #define ACDF_LEAST_MAP_CODE_BITS 4u
 #define ACDF_MOST_SUN 4u
 #define ACDF_MOST_INDEXED_AXES 3u
+
+/* Chunk NORM of a local environment, beside HALV and BINS and instead of TREE, TILE and ROWS (SPEC.md §10.7): this,
+ * then a bit for each halving, 1 where each row has a code of its own, then row by row the codes of these halvings,
+ * but for those that the row leads no random numbers to. Runs of bits as in HALV. */
+typedef struct AcdfNormalsHeader {
+    uint32_t row_count;
+    uint32_t split_count; /* halvings with a code for each row: the top of the tree */
+    uint32_t code_bits;   /* ACDF_LEAST_MAP_CODE_BITS to ACDF_MOST_CODE_BITS */
+    uint32_t reserved;    /* 0 */
+} AcdfNormalsHeader;
+#define ACDF_MOST_NORMAL_RATIO 256u /* rows times splits, at most, over the bytes of NORM */
 
 typedef struct AcdfMap {
     float share;     /* its integral over `total` */
@@ -375,6 +387,7 @@ ACDF_STATIC_ASSERT(sizeof(AcdfPartner) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfPartnerRecord) == 8);
 #ifndef ACDF_ENVIRONMENT_ONLY
 ACDF_STATIC_ASSERT(sizeof(AcdfMapsHeader) == 16);
+ACDF_STATIC_ASSERT(sizeof(AcdfNormalsHeader) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfMap) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfPlanes) == 44);
 ACDF_STATIC_ASSERT(sizeof(AcdfTiles) == 528);

@@ -7,6 +7,7 @@
 #include "opened_file.h"
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include "tables/indexed.h"
+#include "tables/normals.h"
 #include "tables/tree_survey.h"
 #endif
 
@@ -126,6 +127,16 @@ bool make_halved(const Parts& parts, bool lookup, AcdfFile& file) noexcept {
     return tree != nullptr;
 }
 
+#ifndef ACDF_ENVIRONMENT_ONLY
+bool make_normals(const Parts& parts, bool lookup, AcdfFile& file) noexcept {
+    const double* heights = acdf_halved_heights(file.environment.halved);
+    const AcdfNormalRows* const rows = make_normal_rows(parts, lookup, heights, file.allocator, file.memory[3]);
+    file.local.rows_of_normals = rows;
+    if (rows) file.table_bytes += 4 * u64{rows->words};
+    return rows != nullptr;
+}
+#endif
+
 void give_memory(AcdfFile& file) noexcept {
     for (AcdfBlock& block : file.memory) give_block(file.allocator, block);
 }
@@ -172,6 +183,8 @@ bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
     if (parts.halvings && !make_halved(parts, options.tables, file))
         return fail(status, 1003, "%llu halvings", ull{parts.halving_count});
 #ifndef ACDF_ENVIRONMENT_ONLY
+    if (parts.normals && !make_normals(parts, options.tables, file))
+        return fail(status, 1003, "%llu rows", ull{parts.normals->row_count});
     if (file.kind() != ACDF_KIND_ENVIRONMENT) make_view(parts, options.tables ? &survey : nullptr, file);
 #endif
     return true;

@@ -36,6 +36,8 @@ void make_local(const Parts& parts, bool tables, AcdfFile& file) {
     local.environment.total = description.total;
     local.environment.parameterization = description.parameterization;
     local.environment.tree_units = parts.tree_units;
+    local.environment.halved = file.environment.halved;
+    local.rows_of_normals = file.local.rows_of_normals;
     local.partner = parts.partner;
     local.bins = parts.bins;
     local.bright_tiles = parts.bright_tiles;

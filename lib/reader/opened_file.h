@@ -28,7 +28,7 @@ struct AcdfFile {
 #endif
     AcdfAllocator allocator; ///< which gave what follows
     AcdfBlock own;           ///< where this lies
-    AcdfBlock memory[3];     ///< the file's bytes; inflated chunks; runtime tables
+    AcdfBlock memory[4];     ///< the file's bytes; inflated chunks; runtime tables; those of rows of normals
 
     AcdfKind kind() const { return static_cast<AcdfKind>(reinterpret_cast<const AcdfHeader*>(bytes)->kind); }
 };

@@ -15,17 +15,15 @@
 #define ACDF_INDEXED_H
 
 #include <acdf/cone.h>
-#include <acdf/sample.h>
+#include <acdf/top_tile.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-enum { ACDF_MOST_MIXED = 8 };     /* 2^ACDF_MOST_INDEXED_AXES */
-#define ACDF_KEPT_SPLITS 127u     /* at most 256 */
-#define ACDF_MIXED_SQUARES 16u    /* of an axis of random numbers */
-#define ACDF_WEIGHTS 0x1p21       /* of a mixture: the sum of its weights */
-#define ACDF_TOP_TILE 0x80000000u /* a child that is a tile: this and its number */
+enum { ACDF_MOST_MIXED = 8 };  /* 2^ACDF_MOST_INDEXED_AXES */
+#define ACDF_KEPT_SPLITS 127u  /* at most 256 */
+#define ACDF_MIXED_SQUARES 16u /* of an axis of random numbers */
 
 /* A split at the top of the tree, where each map has a code of its own. They stand level by level; 0 is the root.
  */
@@ -33,14 +31,6 @@ typedef struct AcdfTopSplit {
     uint32_t axis, middle;
     uint32_t child[2]; /* lower and upper half: a later split, or ACDF_TOP_TILE | a tile */
 } AcdfTopSplit;
-
-/* A node at which codes of maps end. All maps share what is below. */
-typedef struct AcdfTopTile {
-    double scale;      /* pdf over probability, sr^-1 */
-    uint32_t node;     /* of the shared tree, or ACDF_LEAF */
-    AcdfSpan steps[2]; /* of that tree's random numbers */
-    AcdfSpan box[2];
-} AcdfTopTile;
 
 /* Tables of an open file: flat words without pointers, offsets in words from the start of this. */
 typedef struct AcdfTop {
@@ -90,9 +80,6 @@ typedef struct AcdfMixed {
     uint8_t square[ACDF_MIXED_SQUARES * ACDF_MIXED_SQUARES]; /* of random numbers: the deepest of these splits */
 } AcdfMixed;
 
-#define ACDF_TOP_ARRAY(type, top, offset)                                                                          \
-    ((const type*)(const void*)((const uint32_t*)(const void*)(top) + (offset)))
-
 /* Steps of the maps of a mixture, at an array of one a map: out of 2^52. */
 ACDF_INLINE double acdf_mixed_steps(const AcdfMixed* sky, const uint32_t* of_maps) {
     double sum = sky->weight[0] * (double)of_maps[sky->map[0]];
@@ -135,22 +122,6 @@ ACDF_FN void acdf_between_suns(const double a[3], const double b[3], double t, d
     for (i = 0; i < 3; ++i) out[i] = of_a * a[i] + of_b * b[i];
     length = sqrt(acdf_cone_dot(out, out));
     for (i = 0; i < 3; ++i) out[i] /= length;
-}
-
-/* Whole numbers in proportion to weights, none of which becomes 0 unless it is. */
-ACDF_FN void acdf_whole_weights(double* weight, uint32_t count) {
-    double sum = 0.0, left = ACDF_WEIGHTS;
-    uint32_t i, most = 0;
-    for (i = 0; i < count; ++i) {
-        sum += weight[i];
-        if (weight[i] > weight[most]) most = i;
-    }
-    for (i = 0; i < count; ++i) {
-        const double whole = floor(weight[i] / sum * ACDF_WEIGHTS + 0.5);
-        weight[i] = whole < 1.0 ? 1.0 : whole;
-        left -= weight[i];
-    }
-    weight[most] += left;
 }
 
 /* Where descents begin: each square of random numbers at the deepest of the first splits that it leads to. */
@@ -245,44 +216,6 @@ ACDF_FN void acdf_indexed_at(const AcdfIndexed* file, const double* coordinates,
 }
 
 /* ---- the tree ------------------------------------------------------------------------------------------- */
-/* Steps of both axes. */
-ACDF_INLINE double acdf_steps_in(const AcdfSpan steps[2]) {
-    return (double)(steps[0].end[1] - steps[0].end[0]) * (double)(steps[1].end[1] - steps[1].end[0]);
-}
-
-/* Rescales random numbers of a tile to those of the cell that they lead to. Returns the cell's share. */
-ACDF_OUTLINE_ON_CPU double acdf_tile_descend(const AcdfTop* top, const AcdfTopTile* tile, double u[2],
-                                             AcdfSpan box[2]) {
-    AcdfSpan steps[2];
-    uint32_t number[2];
-    int axis;
-    for (axis = 0; axis < 2; ++axis) {
-        const uint32_t low = tile->steps[axis].end[0], wide = tile->steps[axis].end[1] - low;
-        const uint32_t step = (uint32_t)(u[axis] * (double)wide);
-        steps[axis] = tile->steps[axis];
-        number[axis] = low + (step < wide ? step : wide - 1u);
-    }
-    acdf_halvings_sample(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile->node, number, steps, box);
-    for (axis = 0; axis < 2; ++axis) {
-        const double wide = (double)(tile->steps[axis].end[1] - tile->steps[axis].end[0]);
-        const double t = (u[axis] * wide - (double)(steps[axis].end[0] - tile->steps[axis].end[0])) /
-                         (double)(steps[axis].end[1] - steps[axis].end[0]);
-        u[axis] = acdf_clamp(t, 0.0, 1.0);
-    }
-    return acdf_steps_in(steps) / acdf_steps_in(tile->steps);
-}
-
-/* Pdf over probability in a box, sr^-1. */
-ACDF_INLINE double acdf_box_scale(const AcdfTop* top, const AcdfGrid* grid, const AcdfSpan box[2]) {
-    double height;
-    if (acdf_grid_is_octahedral(grid)) {
-        height = 2.0 * (double)(box[1].end[1] - box[1].end[0]) / (double)grid->rows;
-    } else {
-        const double* heights = ACDF_TOP_ARRAY(double, top, top->heights);
-        height = heights[box[1].end[0]] - heights[box[1].end[1]];
-    }
-    return (double)grid->columns / (2.0 * ACDF_PI * (double)(box[0].end[1] - box[0].end[0]) * height);
-}
 /* The square of a random number on its axis. */
 ACDF_INLINE uint32_t acdf_mixed_square(double u) {
     const uint32_t square = (uint32_t)(u * ACDF_MIXED_SQUARES);
@@ -333,8 +266,8 @@ ACDF_INLINE double acdf_mixed_descend(const AcdfMixed* sky, double u[2], AcdfSpa
         box[axis] = tile->box[axis];
     }
     if (tile->node == ACDF_LEAF) return here * tile->scale;
-    share = acdf_tile_descend(top, tile, u, box);
-    return here * share * acdf_box_scale(top, &sky->grid, box);
+    share = acdf_tile_descend(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile, u, box);
+    return here * share * acdf_box_scale(ACDF_TOP_ARRAY(double, top, top->heights), &sky->grid, box);
 }
 
 /* The tile that holds a grid step of each axis. */
@@ -359,15 +292,12 @@ ACDF_INLINE double acdf_mixed_cell(const AcdfMixed* sky, const uint32_t position
     const uint32_t at = acdf_top_find(top, position);
     const AcdfTopTile* tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + at;
     const double here = acdf_mixed_steps(sky, ACDF_TOP_ARRAY(uint32_t, top, top->of_tile) + (size_t)at * top->maps);
-    AcdfSpan steps[2];
+    double share;
     box[0] = tile->box[0];
     box[1] = tile->box[1];
     if (tile->node == ACDF_LEAF) return here * 0x1p-52 * tile->scale;
-    steps[0] = tile->steps[0];
-    steps[1] = tile->steps[1];
-    acdf_halvings_find(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile->node, position, steps, box);
-    return here * 0x1p-52 * (acdf_steps_in(steps) / acdf_steps_in(tile->steps)) *
-           acdf_box_scale(top, &sky->grid, box);
+    share = acdf_tile_find(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile, position, box);
+    return here * 0x1p-52 * share * acdf_box_scale(ACDF_TOP_ARRAY(double, top, top->heights), &sky->grid, box);
 }
 
 /* ---- samples and pdfs ----------------------------------------------------------------------------------- */
@@ -380,8 +310,7 @@ ACDF_INLINE float acdf_mixed_both(const AcdfMixed* sky, const float direction[3]
         *in_cone = sky->sun_share * acdf_cone_pdf(&sky->cone, acdf_cone_place(&sky->cone, direction));
         pdf += *in_cone;
     }
-    if (pdf >= 3.402823466e38) return 3.402823466e38f;
-    return pdf > 1.17549435e-38 ? (float)pdf : pdf > 0.0 ? 1.17549435e-38f : 0.0f;
+    return acdf_float_pdf(pdf);
 }
 
 /* The cell that holds a direction, in doubles: right at borders, too. Returns its pdf; below 0 for directions that
@@ -417,7 +346,6 @@ ACDF_INLINE float acdf_mixed_pdf(const AcdfMixed* sky, const float direction[3])
 ACDF_INLINE AcdfDirectionSample acdf_mixed_sample(const AcdfMixed* sky, double u0, double u1) {
     double u[2], p, unused;
     AcdfDirectionSample out;
-    AcdfRange range[2];
     AcdfSpan box[2];
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
@@ -429,14 +357,7 @@ ACDF_INLINE AcdfDirectionSample acdf_mixed_sample(const AcdfMixed* sky, double u
     }
     u[1] = (u[1] - sky->sun_share) / (1.0 - sky->sun_share);
     p = acdf_mixed_descend(sky, u, box);
-    acdf_halved_ranges(box, range);
-    if (sky->grid.parameterization != ACDF_PARAM_OCTAHEDRAL) {
-        const double* heights = ACDF_TOP_ARRAY(double, sky->top, sky->top->heights);
-        out = acdf_sphere_position_between(sky->grid.columns, range, u, p, heights[range[1].low],
-                                           heights[range[1].high]);
-    } else {
-        out = acdf_grid_position(&sky->grid, range, u, p);
-    }
+    acdf_box_direction(ACDF_TOP_ARRAY(double, sky->top, sky->top->heights), &sky->grid, box, u, out.direction);
     out.pdf = acdf_mixed_both(sky, out.direction, p, &unused);
     return out;
 }

@@ -113,6 +113,9 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     AcdfRange range[2];
     double p;
     if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_sample(local, point, 1, u);
+    if (point->what == ACDF_LOCAL_ROWS)
+        return acdf_rows_sample(local->rows_of_normals, local->environment.halved, &grid, &point->rows, u);
+    if (local->environment.halved) return acdf_environment_halved_sample(&local->environment, u[0], u[1]);
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     p = point->what == ACDF_LOCAL_BLEND
             ? acdf_local_blend_sample(local, point, u, range)
@@ -218,7 +221,7 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
     if (point.what >= ACDF_LOCAL_BLEND)
         return acdf_clamp(local->environment.total * point.sum / point.length, 0.0, 0x1.fffffffffffffp1023);
     if (point.what == ACDF_LOCAL_NOTHING || !acdf_local_bins(local, normal, &bins)) return 0.0;
-    if (point.root == local->environment.root) return local->environment.total;
+    if (local->rows_of_normals || point.root == local->environment.root) return local->environment.total;
     return acdf_clamp(local->environment.total * (double)local->bins[acdf_nearest_bin(&bins)].share, 0.0,
                       0x1.fffffffffffffp1023); /* a file may have a total and a share whose product is too large */
 }
@@ -241,7 +244,7 @@ ACDF_FN int acdf_local_stored(const AcdfLocal* local, const float normal[3]) {
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
     return point.what >= ACDF_LOCAL_BLEND ||
-           (point.what == ACDF_LOCAL_TREE && point.root != local->environment.root);
+           (point.what == ACDF_LOCAL_TREE && !local->rows_of_normals && point.root != local->environment.root);
 }
 
 #ifdef __cplusplus

@@ -4,6 +4,7 @@
 
 #include <acdf/fast_rows.h>
 #include <acdf/local_tables.h>
+#include <acdf/normal_rows.h>
 #include <acdf/normals.h>
 #include <acdf/portals.h>
 
@@ -23,11 +24,12 @@ typedef struct AcdfLocal {
     uint32_t columns;      /* of that grid */
     uint32_t rows;
     double cosine_share;
-    const AcdfLocalTables* tables;  /* runtime tables; null: splits are traversed */
-    const AcdfPartner* partner;     /* null: to be used alone */
-    AcdfVisibilityTable visibility; /* its header is null where there are no visibility cells */
-    AcdfPortalTable portals;        /* its header is null where there are none */
-    AcdfFast fast;                  /* the fast shape: the blend has no rows then, and roots are of grids */
+    const AcdfLocalTables* tables;         /* runtime tables; null: splits are traversed */
+    const AcdfPartner* partner;            /* null: to be used alone */
+    AcdfVisibilityTable visibility;        /* its header is null where there are no visibility cells */
+    AcdfPortalTable portals;               /* its header is null where there are none */
+    AcdfFast fast;                         /* the fast shape: the blend has no rows then, and roots are of grids */
+    const AcdfNormalRows* rows_of_normals; /* one tree of halvings; null: curves or the fast shape */
 } AcdfLocal;
 
 /* Runtime tables of the fast shape: what they have of its rows. */
@@ -41,10 +43,10 @@ ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfN
     return acdf_latlong_bins(local->columns, local->rows, normal, out);
 }
 
-/* What serves a normal: nothing, a tree of its own (or the environment's), or bright tiles and what bins share, in
- * either shape. Made once for a shading point, it serves all samples there. It points into the memory of the
- * AcdfLocal that made it: not for one that was opened otherwise, or moved since. */
-enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND, ACDF_LOCAL_FAST };
+/* What serves a normal: nothing, a tree of its own (or the environment's), bright tiles and what bins share, in
+ * either shape, or rows of a tree of halvings. Made once for a shading point, it serves all samples there. It
+ * points into the memory of the AcdfLocal that made it: not for one that was opened otherwise, or moved since. */
+enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND, ACDF_LOCAL_FAST, ACDF_LOCAL_ROWS };
 
 typedef struct AcdfLocalPoint {
     int what;
@@ -56,6 +58,7 @@ typedef struct AcdfLocalPoint {
     const uint8_t* codes[ACDF_MAX_ROWS_MIXED]; /* the rows in the runtime tables, where there are such */
     const double* parts[ACDF_MAX_ROWS_MIXED];  /* what they give to each tile, where there are such */
     const AcdfFacet* facet;                    /* that of the normal in the runtime tables; null: they have none */
+    AcdfRowMixture rows;                       /* of one tree of halvings */
     double bright_tiles;                       /* sum of the weights of the bright tiles */
     double sum;                                /* of all weights */
     AcdfVisibilityMixture visibility;          /* empty: the position is not known, or does not matter */

@@ -161,6 +161,16 @@ ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint
     AcdfFastShare share;
     acdf_sphere_ranges(env->columns, env->rows, range);
     if (point->what == ACDF_LOCAL_NOTHING) return 0.0;
+    if (point->what == ACDF_LOCAL_ROWS) {
+        AcdfSpan box[2];
+        const double p = acdf_rows_find(local->rows_of_normals, env->halved, &point->rows, square, box);
+        acdf_halved_ranges(box, range);
+        return p;
+    }
+    if (env->halved) {
+        AcdfSpan steps[2];
+        return acdf_environment_halved_cell(env, square, steps, range);
+    }
     if (point->what == ACDF_LOCAL_TREE)
         return acdf_tree_locate(env->tree, env->tree_units, point->root, square, range);
     if (point->what == ACDF_LOCAL_FAST) {
@@ -179,6 +189,11 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
     AcdfLocalSpot spot;
     if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_pdf(local, point, direction);
     if (point->what == ACDF_LOCAL_NOTHING) return 0.0f;
+    if (point->what == ACDF_LOCAL_ROWS) {
+        const AcdfGrid grid = acdf_environment_grid(&local->environment);
+        return acdf_rows_pdf(local->rows_of_normals, local->environment.halved, &grid, &point->rows, direction);
+    }
+    if (local->environment.halved) return acdf_environment_halved_pdf(&local->environment, direction);
     spot = acdf_local_spot(
         local, point->what == ACDF_LOCAL_BLEND && acdf_local_tabled(local, point) ? local->tables : 0, direction);
     return acdf_local_spot_pdf(local, point, direction, &spot);
@@ -272,7 +287,7 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_fast_pdf(const AcdfLocal* local, const 
 }
 /* Pdf per steradian with which acdf_local_sample samples `direction` (unit) for that normal. */
 ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {
-    if (local->tables)
+    if (local->tables && !local->rows_of_normals)
         return local->fast.grid ? acdf_local_new_fast_pdf(local, normal, direction)
                                 : acdf_local_new_pdf(local, normal, direction);
     return acdf_local_any_new_pdf(local, normal, direction);

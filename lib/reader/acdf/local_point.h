@@ -93,9 +93,38 @@ ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, A
     if (out->sum > 0.0) out->what = ACDF_LOCAL_BLEND;
 }
 
+/* acdf_local_at of one tree of halvings. */
+ACDF_INLINE void acdf_local_rows_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+    AcdfNormalBins bins;
+    double weight[ACDF_NORMALS_MIXED];
+    uint32_t row[ACDF_NORMALS_MIXED];
+    int i, count = 0;
+    acdf_local_no_rows(normal, out);
+    out->visibility.count = 0;
+    if (!acdf_local_bins(local, out->surface, &bins)) return;
+    for (i = 0; i < bins.count; ++i) {
+        const AcdfBin* bin = &local->bins[bins.bin[i]];
+        if (bin->root == ACDF_NO_ROOT) {
+            acdf_local_whole(local, out);
+            return;
+        }
+        if (!(bin->share > 0.0f)) continue;
+        row[count] = bin->root;
+        out->sum += weight[count++] = bins.weight[i] * (double)bin->share;
+    }
+    acdf_local_normal(local, out->surface, out);
+    if (!(out->sum > 0.0)) return;
+    acdf_rows_mix(local->rows_of_normals, row, weight, count, &out->rows);
+    out->what = ACDF_LOCAL_ROWS;
+}
+
 /* Finds what serves a normal. */
 ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     out->visible_portals.count = 0;
+    if (local->rows_of_normals) {
+        acdf_local_rows_at(local, normal, out);
+        return;
+    }
     if (local->fast.grid) {
         out->visibility.count = 0;
         if (acdf_local_begin_fast(local, normal, out)) acdf_local_fast_sum(local, 1, out);
@@ -114,7 +143,7 @@ ACDF_FN void acdf_local_at_cells(const AcdfLocal* local, const float position[3]
     out->visible_portals.count = 0;
     acdf_as_given(normal, out->surface);
     /* First of all: rows of visibility cells are far away, and come while the normal's are found. */
-    if (local->fast.grid) { /* which knows no visibility cells */
+    if (local->fast.grid || local->rows_of_normals) { /* which know no visibility cells */
         acdf_local_at(local, normal, out);
         return;
     }

@@ -27,8 +27,8 @@ typedef struct AcdfMove {
     const void* to;
 } AcdfMove;
 
-/* The file's bytes, what was inflated of them, and runtime tables. */
-enum { ACDF_MAX_MOVES = 3 };
+/* The file's bytes, what was inflated of them, and runtime tables: two where normals have rows of halvings. */
+enum { ACDF_MAX_MOVES = 4 };
 
 /* Where what is at `pointer` lies in the copies. */
 static inline const void* acdf_moved(const void* pointer, const AcdfMove* moves, int count) {
@@ -79,6 +79,7 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
     ACDF_MOVE(uint16_t, local->fast.groups);
     ACDF_MOVE(uint8_t, local->fast.tiles);
     ACDF_MOVE(uint16_t, local->fast.upper);
+    ACDF_MOVE(AcdfNormalRows, local->rows_of_normals);
 }
 
 /* The same of a BRDF. */

@@ -60,9 +60,12 @@ ACDF_INLINE void acdf_halved_ranges(const AcdfSpan box[2], AcdfRange range[2]) {
     }
 }
 
-/* z at a row of a lat-long grid: acdf_row_z, kept with the tree. */
+/* z at the rows of a lat-long grid: acdf_row_z, kept with the tree. */
+ACDF_INLINE const double* acdf_halved_heights(const AcdfHalvedTree* tree) {
+    return (const double*)(const void*)ACDF_WORDS(tree, tree->heights);
+}
 ACDF_INLINE double acdf_halved_height(const AcdfHalvedTree* tree, uint32_t row) {
-    return ((const double*)(const void*)ACDF_WORDS(tree, tree->heights))[row];
+    return acdf_halved_heights(tree)[row];
 }
 
 /* acdf_environment_sample by halvings. */

@@ -117,15 +117,17 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
 constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_TREE};
 constexpr u32 required_beside_halvings = 1; // the first of them
 constexpr u32 required_of_maps[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_HALVINGS, ACDF_CHUNK_MAPS};
+constexpr u32 required_of_normals[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_NORMALS};
 
 // Whether a known chunk may be in files of a kind.
 bool belongs(int known, u32 kind) {
     if (known == chunk_local || known == chunk_visibility || known == chunk_portals || known == chunk_sums ||
-        known == chunk_grid)
+        known == chunk_grid || known == chunk_normals)
         return kind == ACDF_KIND_LOCAL;
     if (known == chunk_views) return kind == ACDF_KIND_BRDF;
     if (known == chunk_partner) return kind != ACDF_KIND_BRDF && kind != ACDF_KIND_INDEXED;
-    if (known == chunk_halvings) return kind == ACDF_KIND_ENVIRONMENT || kind == ACDF_KIND_INDEXED;
+    if (known == chunk_halvings)
+        return kind == ACDF_KIND_ENVIRONMENT || kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_INDEXED;
     if (known == chunk_maps) return kind == ACDF_KIND_INDEXED;
     if (known == chunk_tiles || known == chunk_rows) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
     return true;
@@ -216,9 +218,12 @@ bool has_chunk(const ChunkTable& table, u32 type) {
 }
 
 void check_required(const ChunkTable& table, u32 kind, Report& report) {
-    const u32* types = kind == ACDF_KIND_INDEXED ? required_of_maps : required_types;
+    const bool halved = has_chunk(table, ACDF_CHUNK_HALVINGS);
+    const u32* types = kind == ACDF_KIND_INDEXED           ? required_of_maps
+                       : halved && kind == ACDF_KIND_LOCAL ? required_of_normals
+                                                           : required_types;
     u32 count = sizeof required_types / sizeof *required_types;
-    if (kind != ACDF_KIND_INDEXED && has_chunk(table, ACDF_CHUNK_HALVINGS)) count = required_beside_halvings;
+    if (halved && kind == ACDF_KIND_ENVIRONMENT) count = required_beside_halvings;
     for (u32 i = 0; i < count; ++i)
         if (!has_chunk(table, types[i]))
             report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(types[i]).text);
@@ -266,12 +271,19 @@ void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
     }
 }
 
+// Another chunk that a tree of halvings does without; null: there is none.
+const char* beside_halvings(const Payloads& payloads, u32 kind) {
+    if (payloads.of[chunk_tree].data) return "TREE";
+    if (payloads.of[chunk_bins].data && kind != ACDF_KIND_LOCAL) return "BINS";
+    return payloads.of[chunk_tiles].data ? "TILE" : nullptr;
+}
+
 // An environment by halvings, or several.
 void check_halved_environment(const Payloads& payloads, [[maybe_unused]] u32 kind, const AcdfAllocator& allocator,
                               Report& report, Parts& parts) {
     const Payload& halvings = payloads.of[chunk_halvings];
-    if (payloads.of[chunk_bins].data || payloads.of[chunk_tree].data)
-        report.add(6035, halvings.at(0), "%s is there, too", payloads.of[chunk_tree].data ? "TREE" : "BINS");
+    if (const char* other = beside_halvings(payloads, kind))
+        report.add(6035, halvings.at(0), "%s is there, too", other);
     if (parts.description->fit != ACDF_FIT_VARIANCE)
         report.add(6035, halvings.at(0), "with fit %u", parts.description->fit);
     if (!report.stopped()) check_halvings(halvings, report, allocator, parts);
@@ -279,6 +291,7 @@ void check_halved_environment(const Payloads& payloads, [[maybe_unused]] u32 kin
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (kind == ACDF_KIND_INDEXED)
         return check_indexed(payloads.of[chunk_description], payloads.of[chunk_maps], report, parts);
+    if (kind == ACDF_KIND_LOCAL) return check_normals(payloads, report, parts);
 #endif
     check_environment(payloads.of[chunk_description], payloads.of[chunk_bins], report, parts);
 }

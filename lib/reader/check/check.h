@@ -106,6 +106,9 @@ struct Parts {
     const double* coordinates = nullptr;          ///< of its maps
     const AcdfMap* of_map = nullptr;              ///< maps->map_count
     const std::uint8_t* map_splits = nullptr;     ///< a bit for each halving; then the codes of each map
+    const AcdfNormalsHeader* normals = nullptr;   ///< of a local environment on one tree of halvings
+    const std::uint8_t* normal_splits = nullptr;  ///< a bit for each halving; then the codes of each row,
+    std::uint64_t normals_size = 0;               ///< of so many bytes
     AcdfPortalTable portals = {};                 ///< beside visibility cells; its header is null where absent
     class TreeSurvey* survey = nullptr;           ///< given by the caller: made where it costs nothing
 #endif

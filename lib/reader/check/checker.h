@@ -70,6 +70,7 @@ enum KnownChunk {
     chunk_grid,
     chunk_halvings,
     chunk_maps,
+    chunk_normals,
     known_chunks
 };
 

@@ -1,6 +1,6 @@
 // Indexed environments: chunk MAPS, and the axes of maps.
-#include "check/bits.h"
 #include "check/kinds.h"
+#include "check/top.h"
 
 #include <cmath>
 
@@ -13,8 +13,7 @@ using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using ull = unsigned long long;
 
-constexpr u32 most_map_steps = 65536;   // of an indexed axis
-constexpr u32 most_open_halvings = 128; // nodes: a level of each axis, and one
+constexpr u32 most_map_steps = 65536; // of an indexed axis
 
 // False where MAPS cannot be read by them.
 bool check_map_axes(const Payload& payload, Report& report, const Parts& parts) {
@@ -95,32 +94,12 @@ void check_each_map(const Payload& payload, u64 at, const AcdfMap* maps, const A
     if (!(std::fabs(sum - 1.0) <= 0x1p-20)) report.add(7022, payload.at(at), "the shares add up to %.9g", sum);
 }
 
-// Halvings with codes of maps: the top of the tree.
+// The codes of maps: those of the top of the tree.
 void check_map_splits(const Payload& payload, const MapsLayout& layout, Report& report, const Parts& parts) {
-    struct Open {
-        u32 node;
-        bool top;
-    } open[most_open_halvings];
     Bits bits(payload, layout.splits, layout.codes);
-    u32 count = 0, waiting = 0;
-    if (parts.halving_count > 0) open[waiting++] = {0, true};
-    while (waiting > 0) { // in preorder
-        const Open at = open[--waiting];
-        const u64 place = bits.place();
-        const bool own = bits.take(1);
-        count += own;
-        if (own && !at.top)
-            return report.add(6037, place, "halving %u has one, the one above it has none", at.node);
-        const u32 link = parts.halvings[at.node].link;
-        if (!(link >> 4 & 1u)) open[waiting++] = {at.node + (link >> 5), own};
-        if (!(link >> 3 & 1u)) open[waiting++] = {at.node + 1, own};
-    }
-    if (count != layout.header.split_count)
-        return report.add(6037, payload.at(layout.splits), "%u halvings have them, not %u", count,
-                          layout.header.split_count);
-    while (bits.has(1))
-        if (bits.take(1)) return report.add(6038, payload.at(layout.splits), "behind the splits");
-    const u64 used = layout.codes * 8 + u64{layout.header.map_count} * count * layout.header.code_bits;
+    if (!check_top(bits, layout.header.split_count, report, parts)) return;
+    const u64 count = layout.header.split_count;
+    const u64 used = layout.codes * 8 + layout.header.map_count * count * layout.header.code_bits;
     for (u64 at = used; at < layout.end * 8; ++at)
         if (payload.data[at / 8] >> at % 8 & 1u) return report.add(6038, payload.at(at / 8), "behind the codes");
 }

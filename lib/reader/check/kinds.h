@@ -48,6 +48,9 @@ void check_brdf_kind(const Payload& description, const Payload& views, Report& r
 /// What an indexed environment has beside HALV: MAPS and its axes; needs parts.halvings. Sets parts.maps and what
 /// belongs to it.
 void check_indexed(const Payload& description, const Payload& maps, Report& report, Parts& parts) noexcept;
+/// What a local environment on one tree of halvings has beside HALV: BINS, NORM and LOCL; needs parts.halvings.
+/// Sets parts.normals and what belongs to it.
+void check_normals(const Payloads& payloads, Report& report, Parts& parts) noexcept;
 /// The same of tables.
 void check_table_kind(const Payload& description, const Payload& bins, Report& report, const Parts& parts) noexcept;
 

@@ -27,7 +27,9 @@ const Rule rules[] = {
     {3002, error, "critical-chunk", "A critical chunk is of a known type."},
     {3003, error, "duplicate-chunk", "No two chunks are of one type."},
     {3004, error, "missing-chunk",
-     "DESC is there, and BINS and TREE are unless HALV is; in files of kind 5 HALV and MAPS are."},
+     "DESC is there, and BINS and TREE are unless HALV is; in files of kind 5 HALV and MAPS are, and beside HALV "
+     "in "
+     "files of kind 2 BINS and NORM."},
     {3005, error, "codec", "`codec` is 0 (none), 1 (zlib) or, of TREE, 2 (planes)."},
     {3006, error, "chunk-offset",
      "A payload starts at the first multiple of 64 after what comes before it, in the table's order."},
@@ -112,7 +114,7 @@ const Rule rules[] = {
      "A split is on axis 0 or 1, its position strictly inside the box that it divides."},
     {6024, error, "tile-root", "The root of a tile is the start of a curve, or FFFFFFFF."},
     {6025, error, "rows", "ROWS comes with TILE, and holds `row_count` rows of a byte a split."},
-    {6026, error, "bin-row", "The row of a bin is one of ROWS, of SUMS where there is that, or FFFFFFFF."},
+    {6026, error, "bin-row", "The row of a bin is one of ROWS, SUMS or NORM, whichever is there, or FFFFFFFF."},
     {6027, error, "fast-shape",
      "SUMS and GRID come together, with TILE and roots of its tiles, and without ROWS, PLAC and PORT."},
     {6028, error, "sums",
@@ -130,21 +132,28 @@ const Rule rules[] = {
      "A dark node is a leaf; one with a code between the first and the last has two steps of random numbers or "
      "more on its axis."},
     {6034, error, "halvings-padding", "The padding of HALV is zero."},
-    {6035, error, "halvings-alone", "HALV comes without BINS and TREE, and with fit 4."},
+    {6035, error, "halvings-alone",
+     "HALV comes without TREE and TILE, without BINS but in local environments, and with fit 4."},
     {6036, error, "maps",
      "MAPS is as long as its counts say: as many maps as bins, at most as many splits as halvings, codes of 4 to "
      "12 "
      "bits, and `sun` at most 4."},
     {6037, error, "map-splits",
-     "`split_count` halvings have a code of each map; all above such a halving have one, too."},
-    {6038, error, "maps-padding", "The padding of MAPS is zero."},
+     "`split_count` halvings have a code of each map or row; all above such a halving have one, too."},
+    {6038, error, "maps-padding", "The padding of MAPS and of NORM is zero."},
+    {6039, error, "normals",
+     "NORM is as long as its codes need: 1 to as many rows as bins, at most as many splits as halvings, rows times "
+     "two more than splits at most 256 times its bytes, codes of 4 to 12 bits, and `reserved` is zero."},
+    {6040, error, "normal-codes",
+     "NORM has all codes of each row; where one lies between the first and the last, two steps or more are "
+     "divided."},
 
     {7001, error, "environment-axes",
      "The first axes of an environment, local or not, are those of §6.1 or, with parameterization 4, §6.6, of at "
      "most 65536 steps; one that is not local has no others."},
     {7002, error, "environment-bins", "An environment has one bin."},
     {7003, error, "normal-axes",
-     "A local environment has the axes of an environment, and one or two of normals as in §10."},
+     "A local environment has the axes of an environment, and one or two of normals as in §10; beside NORM one."},
     {7004, error, "normal-bins", "A local environment has as many bins as its normals' axes make."},
     {7005, error, "local-chunk",
      "A local environment has LOCL, as long as its count of bright tiles says, at most 64; `cosine_share` is in "

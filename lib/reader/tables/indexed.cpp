@@ -2,6 +2,7 @@
 
 #include "check/bits.h"
 #include "memory.h"
+#include "tables/top_lookup.h"
 
 #include <cstring>
 
@@ -14,7 +15,6 @@ using u64 = std::uint64_t;
 
 constexpr u32 most_open_tops = 128; // nodes that wait: a level of each axis, and one
 constexpr u32 most_levels = 64;
-constexpr u32 most_top_bits = 7; // of the lookup grid's axes
 
 u64 to_top_line(u64 words) { return (words + 15) / 16 * 16; }
 
@@ -25,11 +25,8 @@ struct TopLayout {
 
     TopLayout(const Parts& parts, bool latlong, bool lookup) {
         const u64 splits = parts.maps->split_count, maps = parts.maps->map_count;
-        const u32 columns = parts.axes[ACDF_AXIS_PHI].resolution, rows = parts.axes[ACDF_AXIS_THETA].resolution;
-        // A square for a quarter of a tile or more, of a step or more.
-        while (lookup && bits < most_top_bits && splits >> 2 * bits > 0 && 2u << bits < columns &&
-               2u << bits < rows)
-            ++bits;
+        const u32 rows = parts.axes[ACDF_AXIS_THETA].resolution;
+        if (lookup) bits = top_lookup_bits(parts, parts.maps->split_count);
         nodes = to_top_line(words_for(8 * sizeof(AcdfTop)));
         heights = to_top_line(nodes + 2 * u64{parts.halving_count});
         top = to_top_line(heights + (latlong ? 2 * (u64{rows} + 1) : 0));
@@ -53,9 +50,10 @@ public:
     void run() {
         count_levels();
         make_splits();
-        for (u32 y = 0; top_->bits && y < 1u << top_->bits; ++y)
-            for (u32 x = 0; x < 1u << top_->bits; ++x)
-                array<u32>(top_->starts)[y << top_->bits | x] = start_of(x, y);
+        fill_top_starts(
+            top_->bits, top_->position_scale, array<u32>(top_->starts),
+            [&](u32 at, u32& axis, u32& middle) { axis = splits_[at].axis, middle = splits_[at].middle; },
+            [&](u32 at, bool upper) { return splits_[at].child[upper]; });
     }
 
 private:
@@ -128,7 +126,7 @@ private:
         if (has_codes(node.node)) return node.number = first_[node.level]++;
         const AcdfGrid grid = {parts_.axes[ACDF_AXIS_PHI].resolution, parts_.axes[ACDF_AXIS_THETA].resolution,
                                parts_.description->parameterization};
-        tiles_[tile_count_] = {acdf_box_scale(top_, &grid, node.box),
+        tiles_[tile_count_] = {acdf_box_scale(array<double>(top_->heights), &grid, node.box),
                                node.node,
                                {node.steps[0], node.steps[1]},
                                {node.box[0], node.box[1]}};
@@ -162,24 +160,6 @@ private:
         return static_cast<u32>(held >> at % 32) & ((1u << maps_.code_bits) - 1);
     }
 
-    // The first step of an axis in a square, and of the one after it.
-    u32 first_step(u32 axis, u32 square) const {
-        const u64 scale = top_->position_scale[axis];
-        return static_cast<u32>(((u64{square} << 32) + scale - 1) / scale);
-    }
-
-    u32 start_of(u32 x, u32 y) const {
-        const u32 low[2] = {first_step(0, x), first_step(1, y)};
-        const u32 high[2] = {first_step(0, x + 1), first_step(1, y + 1)};
-        u32 at = 0;
-        while (!(at & ACDF_TOP_TILE)) {
-            const AcdfTopSplit& split = splits_[at];
-            if (low[split.axis] < split.middle && high[split.axis] > split.middle) break;
-            at = split.child[low[split.axis] >= split.middle];
-        }
-        return at;
-    }
-
     const Parts& parts_;
     const AcdfMapsHeader& maps_;
     AcdfTop* top_;
@@ -211,7 +191,7 @@ AcdfTop* make_top(const Parts& parts, bool lookup, const AcdfAllocator& allocato
     top->bits = layout.bits;
     top->starts = static_cast<u32>(layout.starts);
     for (u32 axis = 0; axis < 2; ++axis)
-        top->position_scale[axis] = static_cast<u32>((u64{1} << (32 + layout.bits)) / parts.axes[axis].resolution);
+        top->position_scale[axis] = top_position_scale(parts.axes[axis].resolution, layout.bits);
     u32* words = static_cast<u32*>(block.data);
     if (parts.halving_count)
         std::memcpy(words + top->nodes, parts.halvings, parts.halving_count * sizeof(AcdfHalving));

@@ -1,0 +1,78 @@
+// Local environments on one tree of halvings: chunks NORM and BINS.
+#include "check/kinds.h"
+#include "check/row_codes.h"
+
+#include <cmath>
+
+namespace acdf {
+
+namespace {
+
+using u32 = std::uint32_t;
+using u64 = std::uint64_t;
+using ull = unsigned long long;
+
+bool check_normal_counts(const Payload& payload, const AcdfNormalsHeader& normals, Report& report,
+                         const Parts& parts) {
+    const bool right =
+        normals.row_count > 0 && normals.row_count <= parts.description->bin_count &&
+        normals.split_count <= parts.halving_count && normals.code_bits >= ACDF_LEAST_MAP_CODE_BITS &&
+        normals.code_bits <= ACDF_MOST_CODE_BITS && normals.reserved == 0 &&
+        u64{normals.row_count} * (normals.split_count + u64{2}) <= ACDF_MOST_NORMAL_RATIO * payload.size;
+    if (!right)
+        report.add(6039, payload.at(0), "%u rows, %u splits, codes of %u bits", normals.row_count,
+                   normals.split_count, normals.code_bits);
+    return right;
+}
+
+void check_normal_codes(const Payload& payload, u64 begin, const AcdfNormalsHeader& normals, Report& report,
+                        const Parts& parts) {
+    RowCodes codes(parts.halvings, payload.data + sizeof normals, normals.code_bits);
+    Bits bits(payload, begin, payload.size);
+    for (u32 row = 0; normals.split_count > 0 && row < normals.row_count; ++row)
+        if (!codes.row(bits, [](u32, u32) {}))
+            return report.add(6040, bits.place(), "row %u: %s", row, codes.wrong);
+    if (bits.has(32)) return report.add(6039, bits.place(), "bytes are left");
+    while (bits.has(1))
+        if (bits.take(1)) return report.add(6038, payload.at(payload.size - 1), "behind the codes");
+}
+
+void check_normal_bins(const Payload& payload, u32 rows, Report& report, Parts& parts) {
+    const u32 count = parts.description->bin_count;
+    if (payload.size != u64{count} * sizeof(AcdfBin))
+        return report.add(4004, payload.at(0), "BINS has %llu bytes", static_cast<ull>(payload.size));
+    const auto* bins = reinterpret_cast<const AcdfBin*>(payload.data);
+    for (u32 b = 0; b < count && !report.stopped(); ++b) {
+        const u64 at = payload.at(b * sizeof(AcdfBin));
+        if (bins[b].root != ACDF_NO_ROOT && bins[b].root >= rows)
+            report.add(6026, at, "bin %u: row %u of %u", b, bins[b].root, rows);
+        if (!(bins[b].share >= 0.0f && std::isfinite(bins[b].share)))
+            report.add(6017, at, "bin %u: %g", b, static_cast<double>(bins[b].share));
+    }
+    parts.bins = bins;
+}
+
+} // namespace
+
+void check_normals(const Payloads& payloads, Report& report, Parts& parts) noexcept {
+    const Payload &payload = payloads.of[chunk_normals], &bins = payloads.of[chunk_bins];
+    check_local_kind(payloads.of[chunk_description], payloads.of[chunk_local], TileBoxes(), report, parts);
+    if (parts.description->axis_count != 3)
+        report.add(7003, payloads.of[chunk_description].at(offsetof(AcdfDescription, axis_count)), "it has %u axes",
+                   parts.description->axis_count);
+    if (!payload.data || !bins.data || !parts.halvings || report.stopped()) return; // rule 3004
+    const auto& normals = *reinterpret_cast<const AcdfNormalsHeader*>(payload.data);
+    const u64 begin = sizeof normals + 4 * words_for(parts.halving_count);
+    if (payload.size < begin || payload.size % 4 != 0)
+        return report.add(6039, payload.at(0), "%llu bytes", static_cast<ull>(payload.size));
+    if (!check_normal_counts(payload, normals, report, parts)) return;
+    Bits splits(payload, sizeof normals, begin);
+    if (!check_top(splits, normals.split_count, report, parts)) return;
+    check_normal_codes(payload, begin, normals, report, parts);
+    if (!report.stopped()) check_normal_bins(bins, normals.row_count, report, parts);
+    parts.normal_splits = payload.data + sizeof normals;
+    parts.normals_size = payload.size - sizeof normals;
+    parts.normals = &normals;
+}
+
+} // namespace acdf
