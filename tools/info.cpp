@@ -46,6 +46,9 @@ std::uint64_t count_grids(const File& file) {
     return cells;
 }
 
+const AcdfNormalRows* rows_of(const File& file) {
+    return file.kind() == ACDF_KIND_LOCAL ? file.local().data().rows_of_normals : nullptr;
+}
 bool is_fast(const File& file) { return file.kind() == ACDF_KIND_LOCAL && file.local().data().fast.grid; }
 
 /// All that are halved: splits of all maps, and what maps share below.
@@ -75,6 +78,10 @@ TreeCounts count_tree(const File& file) {
     }
     if (!file.has_bins()) {
         counts.cells = file.environment().data().halved->count + 1;
+        return counts;
+    }
+    if (rows_of(file)) {
+        counts.cells = file.local().environment().data().halved->count + 1;
         return counts;
     }
     if (is_fast(file)) counts.cells = count_grids(file);
@@ -170,9 +177,11 @@ Json local_json(const File& file) {
     report["normals"] = local.subdivisions > 0 ? std::to_string(local.subdivisions)
                                                : std::to_string(local.columns) + "x" + std::to_string(local.rows);
     report["bins_stored"] = stored;
-    report["tiles"] = local.blend.tiles ? local.blend.tiles->tile_count : 0;
-    if (is_fast(file)) report["shape"] = "fast"; // the default is left out
-    report["rows"] = local.blend.tiles ? local.blend.tiles->row_count : 0;
+    const AcdfNormalRows* const rows = local.rows_of_normals;
+    const AcdfTiles* const tiles = local.blend.tiles;
+    report["tiles"] = rows ? rows->splits + 1 : tiles ? tiles->tile_count : 0;
+    report["shape"] = rows ? "halvings" : is_fast(file) ? "fast" : tiles ? "small" : "separate";
+    report["rows"] = rows ? rows->rows : tiles ? tiles->row_count : 0;
     report["bright_tiles"] = local.bright_tile_count;
     report["cosine_share"] = local.cosine_share;
     if (const AcdfVisibility* visibility = local.visibility.header)

@@ -109,6 +109,15 @@ void for_each_cell_in(const File& file, std::uint32_t root, const AcdfRange* ran
 
 std::vector<TileBox> tile_boxes(const File& file) {
     std::vector<TileBox> out;
+    if (const AcdfNormalRows* rows = file.local().data().rows_of_normals) {
+        for (std::uint32_t t = 0; t <= rows->splits; ++t) {
+            const AcdfTopTile& tile = ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles)[t];
+            TileBox box;
+            acdf_halved_ranges(tile.box, box.data());
+            out.push_back(box);
+        }
+        return out;
+    }
     const AcdfBlend& blend = file.blend();
     if (!blend.tiles) return out;
     const TileBox whole = {{{0, file.axis(0).resolution, 0.0}, {0, file.axis(1).resolution, 0.0}}};
@@ -119,6 +128,14 @@ std::vector<TileBox> tile_boxes(const File& file) {
 void for_each_tile_cell(const File& file, std::uint32_t tile, const AcdfRange* range,
                         const std::function<void(const Cell&)>& visit) {
     const AcdfLocal local = file.local().data();
+    if (const AcdfNormalRows* rows = local.rows_of_normals) {
+        const AcdfTopTile& of = ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles)[tile];
+        const double whole = acdf_span_share(&of.steps[0]) * acdf_span_share(&of.steps[1]);
+        return descend(acdf_halvings_nodes(local.environment.halved), of.node, of.steps, of.box, [&](Cell cell) {
+            cell.probability = of.node == ACDF_LEAF ? 1.0 : cell.probability / whole;
+            visit(cell);
+        });
+    }
     const std::uint32_t root = local.blend.roots ? local.blend.roots[tile] : ACDF_NO_ROOT;
     if (root == ACDF_NO_ROOT) return visit({{range[0], range[1]}, 1.0});
     if (local.fast.grid) return for_each_grid_cell(local.fast.grid + root, range, visit);

@@ -41,7 +41,7 @@ public:
         : file_(file), texels_(target), target_(texels_.target()), local_(file.local().data()), cosines_(target_),
           boxes_(tile_boxes(file)) {
         const std::size_t texels = std::size_t{target_.columns} * target_.rows;
-        if (local_.blend.tiles) {
+        if (!boxes_.empty()) {
             shared_ = {std::vector<std::uint32_t>(texels), std::vector<double>(texels), {}, 0};
             for (std::uint32_t t = 0; t < boxes_.size(); ++t)
                 for_each_tile_cell(file_, t, boxes_[t].data(),
@@ -105,7 +105,9 @@ private:
         out.density.resize(out.tile.size());
         out.slope.clear();
         out.root = root;
-        for_each_cell(file_, root, [&](const Cell& cell) { fill(cell.range, cell.probability, 0, out); });
+        const auto fill_cell = [&](const Cell& cell) { fill(cell.range, cell.probability, 0, out); };
+        if (local_.environment.halved) for_each_cell(file_.local().environment(), fill_cell);
+        else for_each_cell(file_, root, fill_cell);
     }
 
     void spread(std::uint32_t node, const AcdfMixture& mix, double whole, std::vector<double>& out) const {
@@ -129,7 +131,9 @@ private:
 
     std::vector<double> tile_probabilities(const AcdfLocalPoint& source) const {
         std::vector<double> out(boxes_.size());
-        if (source.what == ACDF_LOCAL_FAST) spread_sums(source, out);
+        if (source.what == ACDF_LOCAL_ROWS)
+            for (std::uint32_t t = 0; t < out.size(); ++t) out[t] = acdf_rows_share(&source.rows, t);
+        else if (source.what == ACDF_LOCAL_FAST) spread_sums(source, out);
         else spread(boxes_.size() > 1 ? 0 : ACDF_TILE_FLAG, source.mix, source.sum, out);
         for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
             out[local_.bright_tiles[k].tile] =

@@ -94,16 +94,23 @@ public:
         if (point_.what == ACDF_LOCAL_NOTHING || !acdf_grid_square(&grid, direction, square, position))
             return false;
         acdf_sphere_ranges(grid.columns, grid.rows, range);
-        const bool found = point_.what == ACDF_LOCAL_BLEND
-                               ? find(square, range, strata)
-                               : acdf_tree_find(local_.environment.tree, point_.root, square, range, strata) > 0.0;
-        if (!found) return false;
+        if (!find_any(square, range, strata)) return false;
         acdf_grid_fractions(&grid, direction, position, range, t);
         for (int axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t[axis]);
         return true;
     }
 
 private:
+    bool find_any(const std::uint32_t* square, AcdfRange* range, AcdfStratum* strata) const {
+        if (point_.what == ACDF_LOCAL_BLEND) return find(square, range, strata);
+        if (point_.what == ACDF_LOCAL_ROWS)
+            return acdf_rows_strata(local_.rows_of_normals, local_.environment.halved, &point_.rows, square, range,
+                                    strata) > 0.0;
+        if (local_.environment.halved)
+            return acdf_environment_halved_find(&local_.environment, square, range, strata) > 0.0;
+        return acdf_tree_find(local_.environment.tree, point_.root, square, range, strata) > 0.0;
+    }
+
     /// Bright tiles come before the mixture in u[0] (acdf_local_sample_bright_tile).
     bool find(const std::uint32_t* square, AcdfRange* range, AcdfStratum* strata) const {
         double probability;

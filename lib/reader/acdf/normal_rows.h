@@ -140,6 +140,44 @@ ACDF_INLINE double acdf_rows_find(const AcdfNormalRows* rows, const AcdfHalvedTr
     return here * acdf_tile_find(acdf_halvings_nodes(tree), tile, position, box);
 }
 
+/* The same, and the random numbers that lead to the cell: acdf_rows_descend to a position. */
+ACDF_FN double acdf_rows_strata(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfRowMixture* mix,
+                                const uint32_t position[2], AcdfRange range[2], AcdfStratum strata[2]) {
+    const AcdfRowSplit* splits = ACDF_TOP_ARRAY(AcdfRowSplit, rows, rows->split);
+    uint32_t at = rows->splits ? 0 : ACDF_TOP_TILE, before[ACDF_NORMALS_MIXED] = {0, 0, 0};
+    const AcdfTopTile* tile;
+    double here = 1.0;
+    AcdfSpan box[2], steps[2];
+    int axis, k;
+    for (axis = 0; axis < 2; ++axis) strata[axis].low = 0.0, strata[axis].width = 1.0;
+    while (!(at & ACDF_TOP_TILE)) {
+        const AcdfRowSplit* split = &splits[at];
+        AcdfStratum* stratum = &strata[split->place & 1u];
+        const uint32_t upper = position[split->place & 1u] >= split->place >> 1;
+        double lower = 0.0, of_half;
+        for (k = 0; k < ACDF_NORMALS_MIXED; ++k) {
+            lower += mix->weight[k] * (double)(mix->steps[k][split->tile] - before[k]) * 0x1p-52;
+            if (upper) before[k] = mix->steps[k][split->tile];
+        }
+        of_half = upper ? here - lower : lower;
+        if (upper) stratum->low += stratum->width * (here > 0.0 ? lower / here : 0.0);
+        stratum->width *= here > 0.0 ? of_half / here : 0.0;
+        here = of_half;
+        at = split->child[upper];
+    }
+    tile = ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + (at & ~ACDF_TOP_TILE);
+    for (axis = 0; axis < 2; ++axis) steps[axis] = tile->steps[axis], box[axis] = tile->box[axis];
+    if (tile->node != ACDF_LEAF) acdf_halvings_find(acdf_halvings_nodes(tree), tile->node, position, steps, box);
+    acdf_halved_ranges(box, range);
+    if (tile->node == ACDF_LEAF || !(here > 0.0)) return here;
+    for (axis = 0; axis < 2; ++axis) {
+        const double wide = (double)(tile->steps[axis].end[1] - tile->steps[axis].end[0]);
+        strata[axis].low += strata[axis].width * ((double)(steps[axis].end[0] - tile->steps[axis].end[0]) / wide);
+        strata[axis].width *= (double)(steps[axis].end[1] - steps[axis].end[0]) / wide;
+    }
+    return here * (acdf_steps_in(steps) / acdf_steps_in(tile->steps));
+}
+
 /* Samples a direction by u in [0, 1]. */
 ACDF_INLINE AcdfDirectionSample acdf_rows_sample(const AcdfNormalRows* rows, const AcdfHalvedTree* tree,
                                                  const AcdfGrid* grid, const AcdfRowMixture* mix, double u[2]) {

@@ -1,5 +1,6 @@
 // Tables for shaders, of a loaded file.
 #include <acdf/shader/tables.h>
+#include <acdf/views.h>
 
 #include "memory.h"
 #include "shader/tables/walk.h"
@@ -32,6 +33,8 @@ Status ShaderTables::make(const File& file, ShaderTables& out) noexcept {
     out = ShaderTables();
     if (file.kind() == ACDF_KIND_TABLE || file.kind() == ACDF_KIND_INDEXED)
         return none("it is neither an environment nor a local environment nor a BRDF");
+    if (file.kind() == ACDF_KIND_LOCAL && file.local().data().rows_of_normals)
+        return none("shaders do not read local environments of halvings; make the file with --shape small or fast");
     if (!acdf::make_walk(file, out.block_))
         return none("its cells tilt (--fit pdf), too many share their curves, or memory is too little");
     return {};

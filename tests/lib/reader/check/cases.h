@@ -31,5 +31,6 @@ std::vector<Case> fast_cases();       ///< of the fast shape of kind 2
 std::vector<Case> local_cases();      ///< of kind 2 and of what bins share
 std::vector<Case> halvings_cases();   ///< of kind 1 with HALV
 std::vector<Case> indexed_cases();    ///< of kind 5
+std::vector<Case> normals_cases();    ///< of kind 2 with HALV
 
 } // namespace acdf_test
