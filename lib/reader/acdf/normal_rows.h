@@ -2,8 +2,10 @@
  * own, below that all share (SPEC.md §10.7). A normal samples from the mixture of the rows around it. Part of
  * acdf/local.h.
  *
- * Numbers that lead a row to a node are whole, out of 2^31, and so are weights of rows, out of 2^21: as in
- * acdf/indexed.h sums of their products are exact, and the pdf of a direction is the one that samples have. */
+ * Where codes of rows end there are tiles, numbered in the order of the tree. u[0] chooses a group of tiles that
+ * follow one another, u[1] a tile in it: two short searches. Numbers that lead a row to a tile are whole, out of
+ * 2^31, and so are weights of rows, out of 2^21: sums of their products are exact in doubles, and the pdf of a
+ * direction is the one that samples have. */
 #ifndef ACDF_NORMAL_ROWS_H
 #define ACDF_NORMAL_ROWS_H
 
@@ -28,10 +30,14 @@ typedef struct AcdfRowSplit {
 typedef struct AcdfNormalRows {
     uint32_t words; /* of all */
     uint32_t rows, splits;
-    uint32_t split;  /* AcdfRowSplit[splits] */
-    uint32_t tiles;  /* AcdfTopTile[splits + 1] */
-    uint32_t stride; /* words of a row */
-    uint32_t steps;  /* uint32[rows][stride]: the steps that lead to all tiles before each, and to all */
+    uint32_t split;      /* AcdfRowSplit[splits] */
+    uint32_t tiles;      /* AcdfTopTile[splits + 1] */
+    uint32_t stride;     /* words of a row */
+    uint32_t steps;      /* uint32[rows][stride]: the steps that lead to all tiles before each, and to all */
+    uint32_t group_bits; /* a group has 2^group_bits tiles, the last one fewer */
+    uint32_t groups;
+    uint32_t group_stride; /* words of a row of ends */
+    uint32_t ends;   /* uint32[rows][group_stride]: the steps that lead to all groups before each, and to all */
     uint32_t bits;   /* the lookup grid has squares of 2^-bits of each axis, in rows of axis 0; 0: there is none */
     uint32_t starts; /* uint32: of each square the deepest split that holds it, or ACDF_TOP_TILE | a tile */
     uint32_t position_scale[2]; /* step * scale / 2^32 is the square of a grid step */
@@ -39,7 +45,8 @@ typedef struct AcdfNormalRows {
 
 /* The rows around a normal, and what of all samples each has: whole numbers that add up to ACDF_WEIGHTS. */
 typedef struct AcdfRowMixture {
-    const uint32_t* steps[ACDF_NORMALS_MIXED];
+    const uint32_t* steps[ACDF_NORMALS_MIXED]; /* to tiles */
+    const uint32_t* ends[ACDF_NORMALS_MIXED];  /* to groups */
     double weight[ACDF_NORMALS_MIXED];
 } AcdfRowMixture;
 
@@ -50,54 +57,63 @@ ACDF_INLINE void acdf_rows_mix(const AcdfNormalRows* rows, const uint32_t* row, 
     for (i = 0; i < ACDF_NORMALS_MIXED; ++i) {
         const int known = i < count ? i : 0;
         out->steps[i] = ACDF_TOP_ARRAY(uint32_t, rows, rows->steps) + (size_t)row[known] * rows->stride;
+        out->ends[i] = ACDF_TOP_ARRAY(uint32_t, rows, rows->ends) + (size_t)row[known] * rows->group_stride;
         out->weight[i] = i < count ? weight[i] : 0.0;
     }
     acdf_whole_weights(out->weight, (uint32_t)count);
 }
 
-/* The cell that u[2] lead to; u is rescaled to [0, 1] in it. Returns its pdf, sr^-1. Until then u[axis] is kept as
- * x[axis] / of[axis], as a division at each level would be slow. */
+/* What of a mixture leads to all before an index of its arrays: a whole number, out of 2^52. */
+ACDF_INLINE double acdf_rows_before(const AcdfRowMixture* mix, const uint32_t* const* arrays, uint32_t index) {
+    double sum = mix->weight[0] * (double)arrays[0][index];
+    int k;
+    for (k = 1; k < ACDF_NORMALS_MIXED; ++k) sum += mix->weight[k] * (double)arrays[k][index];
+    return sum;
+}
+
+/* A part of an axis of random numbers: what lies before it, and what of all it has. Out of 2^52. */
+typedef struct AcdfRowPart {
+    double before, mass;
+} AcdfRowPart;
+
+/* The part that *u of `of` leads to, among those from index `low` up to `high`, some of which have a mass. *u is
+ * rescaled to [0, 1] in it, and `of` becomes it. Returns its index. */
+ACDF_INLINE uint32_t acdf_rows_search(const AcdfRowMixture* mix, const uint32_t* const* arrays, uint32_t low,
+                                      uint32_t high, double* u, AcdfRowPart* of) {
+    const double x = *u * of->mass, whole = floor(x), at = of->before + (whole < of->mass ? whole : of->mass - 1.0);
+    double below = of->before, above = of->before + of->mass;
+    while (high - low > 1u) {
+        const uint32_t middle = (low + high) >> 1;
+        const double before = acdf_rows_before(mix, arrays, middle);
+        if (at >= before) low = middle, below = before;
+        else high = middle, above = before;
+    }
+    *u = acdf_clamp((x - (below - of->before)) / (above - below), 0.0, 1.0);
+    of->before = below;
+    of->mass = above - below;
+    return low;
+}
+
+/* The tile that u[2] lead to, which are rescaled to [0, 1] in it. *share becomes its part of all. */
+ACDF_INLINE const AcdfTopTile* acdf_rows_choose(const AcdfNormalRows* rows, const AcdfRowMixture* mix, double u[2],
+                                                double* share) {
+    AcdfRowPart part = {0.0, 0x1p52};
+    const uint32_t group = acdf_rows_search(mix, mix->ends, 0, rows->groups, &u[0], &part);
+    const uint32_t first = group << rows->group_bits, size = 1u << rows->group_bits,
+                   left = rows->splits + 1u - first;
+    const uint32_t tile =
+        acdf_rows_search(mix, mix->steps, first, first + (size < left ? size : left), &u[1], &part);
+    *share = part.mass * 0x1p-52;
+    return ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + tile;
+}
+
+/* The cell that u[2] lead to; u is rescaled to [0, 1] in it. Returns its pdf, sr^-1. */
 ACDF_INLINE double acdf_rows_descend(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfGrid* grid,
                                      const AcdfRowMixture* mix, double u[2], AcdfSpan box[2]) {
-    const AcdfRowSplit* splits = ACDF_TOP_ARRAY(AcdfRowSplit, rows, rows->split);
-    uint32_t at = rows->splits ? 0 : ACDF_TOP_TILE, before[ACDF_NORMALS_MIXED] = {0, 0, 0};
-    double here = 1.0, share, x[2], of[2];
-    const AcdfTopTile* tile;
-    int axis, k;
-    for (axis = 0; axis < 2; ++axis) x[axis] = u[axis], of[axis] = 1.0;
-    while (!(at & ACDF_TOP_TILE)) {
-        const AcdfRowSplit* split = &splits[at];
-        const uint32_t a = split->place & 1u;
-        uint32_t end[ACDF_NORMALS_MIXED];
-        double lower = 0.0, border, place;
-        for (k = 0; k < ACDF_NORMALS_MIXED; ++k) {
-            end[k] = mix->steps[k][split->tile];
-            lower += mix->weight[k] * (double)(end[k] - before[k]);
-        }
-        lower *= 0x1p-52;
-        border = lower * of[a];
-        place = x[a] * here;
-        if (place >= border && here > lower) {
-            here -= lower;
-            x[a] = place - border;
-            at = split->child[1];
-            for (k = 0; k < ACDF_NORMALS_MIXED; ++k) before[k] = end[k];
-        } else {
-            here = lower;
-            x[a] = place;
-            at = split->child[0];
-        }
-        of[a] *= here;
-        if (of[a] < 0x1p-800) { /* far from what doubles cannot hold */
-            of[a] *= 0x1p800;
-            x[a] *= 0x1p800;
-        }
-    }
-    tile = ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + (at & ~ACDF_TOP_TILE);
-    for (axis = 0; axis < 2; ++axis) {
-        u[axis] = acdf_clamp(x[axis] / of[axis], 0.0, 1.0);
-        box[axis] = tile->box[axis];
-    }
+    double here, share;
+    const AcdfTopTile* tile = acdf_rows_choose(rows, mix, u, &here);
+    box[0] = tile->box[0];
+    box[1] = tile->box[1];
     if (tile->node == ACDF_LEAF) return here * tile->scale;
     share = acdf_tile_descend(acdf_halvings_nodes(tree), tile, u, box);
     return here * share * acdf_box_scale(acdf_halved_heights(tree), grid, box);
@@ -140,36 +156,24 @@ ACDF_INLINE double acdf_rows_find(const AcdfNormalRows* rows, const AcdfHalvedTr
     return here * acdf_tile_find(acdf_halvings_nodes(tree), tile, position, box);
 }
 
-/* The same, and the random numbers that lead to the cell: acdf_rows_descend to a position. */
+/* The same, and the random numbers that lead to the cell. */
 ACDF_FN double acdf_rows_strata(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfRowMixture* mix,
                                 const uint32_t position[2], AcdfRange range[2], AcdfStratum strata[2]) {
-    const AcdfRowSplit* splits = ACDF_TOP_ARRAY(AcdfRowSplit, rows, rows->split);
-    uint32_t at = rows->splits ? 0 : ACDF_TOP_TILE, before[ACDF_NORMALS_MIXED] = {0, 0, 0};
-    const AcdfTopTile* tile;
-    double here = 1.0;
+    const uint32_t at = acdf_rows_tile(rows, position), group = at >> rows->group_bits;
+    const AcdfTopTile* tile = ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + at;
+    const double before = acdf_rows_before(mix, mix->ends, group),
+                 of_group = acdf_rows_before(mix, mix->ends, group + 1u) - before, here = acdf_rows_share(mix, at);
     AcdfSpan box[2], steps[2];
-    int axis, k;
-    for (axis = 0; axis < 2; ++axis) strata[axis].low = 0.0, strata[axis].width = 1.0;
-    while (!(at & ACDF_TOP_TILE)) {
-        const AcdfRowSplit* split = &splits[at];
-        AcdfStratum* stratum = &strata[split->place & 1u];
-        const uint32_t upper = position[split->place & 1u] >= split->place >> 1;
-        double lower = 0.0, of_half;
-        for (k = 0; k < ACDF_NORMALS_MIXED; ++k) {
-            lower += mix->weight[k] * (double)(mix->steps[k][split->tile] - before[k]) * 0x1p-52;
-            if (upper) before[k] = mix->steps[k][split->tile];
-        }
-        of_half = upper ? here - lower : lower;
-        if (upper) stratum->low += stratum->width * (here > 0.0 ? lower / here : 0.0);
-        stratum->width *= here > 0.0 ? of_half / here : 0.0;
-        here = of_half;
-        at = split->child[upper];
-    }
-    tile = ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + (at & ~ACDF_TOP_TILE);
+    int axis;
     for (axis = 0; axis < 2; ++axis) steps[axis] = tile->steps[axis], box[axis] = tile->box[axis];
     if (tile->node != ACDF_LEAF) acdf_halvings_find(acdf_halvings_nodes(tree), tile->node, position, steps, box);
     acdf_halved_ranges(box, range);
-    if (tile->node == ACDF_LEAF || !(here > 0.0)) return here;
+    if (!(here > 0.0)) return 0.0;
+    strata[0].low = before * 0x1p-52;
+    strata[0].width = of_group * 0x1p-52;
+    strata[1].low = (acdf_rows_before(mix, mix->steps, at) - before) / of_group;
+    strata[1].width = here * 0x1p52 / of_group;
+    if (tile->node == ACDF_LEAF) return here;
     for (axis = 0; axis < 2; ++axis) {
         const double wide = (double)(tile->steps[axis].end[1] - tile->steps[axis].end[0]);
         strata[axis].low += strata[axis].width * ((double)(steps[axis].end[0] - tile->steps[axis].end[0]) / wide);

@@ -100,6 +100,12 @@ private:
             if (rows_->splits == 0) continue;
             codes_.row(bits, [&](u32 before, u32 lower) { row[splits_[split++].tile] = before + lower; });
         }
+        for (u32 r = 0; r < rows_->rows; ++r) {
+            const u32* const row = array<u32>(rows_->steps) + u64{r} * rows_->stride;
+            u32* const ends = array<u32>(rows_->ends) + u64{r} * rows_->group_stride;
+            for (u32 group = 0; group < rows_->groups; ++group) ends[group] = row[group << rows_->group_bits];
+            ends[rows_->groups] = ACDF_STEPS;
+        }
     }
 
     const Parts& parts_;
@@ -123,7 +129,10 @@ AcdfNormalRows* make_normal_rows(const Parts& parts, bool lookup, const double* 
     const u64 split = to_row_line(sizeof out / 4), tiles = to_row_line(split + splits * (sizeof(AcdfRowSplit) / 4)),
               starts = to_row_line(tiles + (splits + 1) * (sizeof(AcdfTopTile) / 4)),
               steps = to_row_line(starts + (out.bits ? u64{1} << 2 * out.bits : 0)),
-              stride = to_row_line(splits + 2), words = steps + count * stride;
+              stride = to_row_line(splits + 2), ends = steps + count * stride;
+    while (u64{1} << 2 * out.group_bits < splits + 1) ++out.group_bits; // as many groups as tiles in each, about
+    out.groups = static_cast<u32>((splits >> out.group_bits) + 1);
+    const u64 group_stride = to_row_line(u64{out.groups} + 1), words = ends + count * group_stride;
     if (words > 0xFFFFFFFFu || words > SIZE_MAX / 4) return nullptr;
     block = take_block(allocator, static_cast<std::size_t>(4 * words));
     if (!block.data) return nullptr;
@@ -133,6 +142,8 @@ AcdfNormalRows* make_normal_rows(const Parts& parts, bool lookup, const double* 
     out.starts = static_cast<u32>(starts);
     out.steps = static_cast<u32>(steps);
     out.stride = static_cast<u32>(stride);
+    out.ends = static_cast<u32>(ends);
+    out.group_stride = static_cast<u32>(group_stride);
     for (u32 axis = 0; axis < 2; ++axis)
         out.position_scale[axis] = top_position_scale(parts.axes[axis].resolution, out.bits);
     auto* rows = static_cast<AcdfNormalRows*>(block.data);
