@@ -60,8 +60,8 @@ def read_description(container):
 
 
 def read_bins(payloads, count):
-    """§7.1. A file with HALV has none."""
-    if b"HALV" in payloads:
+    """§7.1. Of files with HALV, local environments alone have them."""
+    if b"BINS" not in payloads:
         return None
     require(len(payloads[b"BINS"]) == 8 * count, 4004)
     bins = list(struct.iter_unpack("<If", payloads[b"BINS"]))

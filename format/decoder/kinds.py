@@ -7,6 +7,7 @@ from .fast import FastTiles
 from .halvings import Halvings
 from .indexed import Indexed, check_indexed_axes
 from .local import Local
+from .normals import NormalRows
 from .refused import require
 from .sphere import Environment
 from .square import grid_of
@@ -25,10 +26,17 @@ def view_of(container, d):
 def sampler_of(container, d):
     chunks, kind = container.payloads, container.kind
     if b"HALV" in chunks:
-        require(b"BINS" not in chunks and b"TREE" not in chunks and d.fit == 4, 6035)
+        require(b"TREE" not in chunks and b"TILE" not in chunks and d.fit == 4, 6035)
+        require(b"BINS" not in chunks or kind == LOCAL, 6035)
         if kind == INDEXED:
             check_indexed_axes(d)
             return Indexed(chunks[b"HALV"], chunks[b"MAPS"], d)
+        if kind == LOCAL:
+            require(len(d.axes) == 3, 7003)
+            tree = Halvings(chunks[b"HALV"], [axis.resolution for axis in d.axes[:2]])
+            rows = NormalRows(tree, chunks[b"NORM"], d.bin_count)
+            require(all(root < rows.row_count or root == NOT_STORED for root, _ in d.bins), 6026)
+            return Local(tree, d, rows, chunks.get(b"LOCL"))
         return Environment(Halvings(chunks[b"HALV"], [axis.resolution for axis in d.axes]), None, grid_of(d))
     tiles = None
     if b"SUMS" in chunks or b"GRID" in chunks:

@@ -28,7 +28,7 @@ def read_local_chunk(data, tiles, bins):
     bright_tiles = [Light(data[8 + 40 * k:48 + 40 * k]) for k in range(count)]
     for k, light in enumerate(bright_tiles):
         square = sum_of([x * x for x in light.direction])
-        require(tiles is not None and light.tile < tiles.count, 7006)
+        require(hasattr(tiles, "boxes") and light.tile < tiles.count, 7006)
         require(k == 0 or light.tile > bright_tiles[k - 1].tile, 7006)
         require(abs(square - 1) < 0.001 and 0 < light.radius <= 2, 7006)
         require(0 < light.share < math.inf and light.box == tiles.boxes[light.tile], 7006)

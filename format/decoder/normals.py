@@ -1,0 +1,137 @@
+"""SPEC.md §10.7: rows of normals at the top of a tree of halvings. What Tiles is to trees of curves."""
+import math
+import struct
+
+from .halvings import STEPS, Bits, share, words
+from .refused import require
+from .sphere import clamp
+
+WEIGHTS = 1 << 21
+
+
+def whole_weights(weights):
+    """Step 3 of §15.2."""
+    total = sum(weights)
+    v = [max(math.floor(w / total * WEIGHTS + 0.5), 1) for w in weights]
+    most = weights.index(max(weights))
+    v[most] += WEIGHTS - sum(v)
+    return v
+
+
+class NormalRows:
+    """Chunk NORM beside the tree of HALV. `tiles` are nodes, in their order."""
+
+    def __init__(self, tree, data, bin_count):
+        self.tree = tree
+        require(len(data) >= 16 and len(data) % 4 == 0, 6039)
+        self.row_count, splits, self.code_bits, reserved = struct.unpack_from("<4I", data)
+        codes_at = 16 + 4 * words(tree.count)
+        require(len(data) >= codes_at and reserved == 0, 6039)
+        require(1 <= self.row_count <= bin_count and splits <= tree.count and 4 <= self.code_bits <= 12, 6039)
+        require(self.row_count * (splits + 2) <= 256 * len(data), 6039)
+        self.tiles = []
+        self.read_splits(Bits(data[16:codes_at]), splits)
+        self.count = len(self.tiles)
+        codes = Bits(data[codes_at:])
+        self.before = [self.read_row(codes) for _ in range(self.row_count)]
+        require(8 * len(codes.data) - codes.at < 32, 6039)
+        require(codes.is_used_up(), 6038)
+        self.group = 1
+        while self.group * self.group < self.count:
+            self.group *= 2
+
+    def read_splits(self, bits, splits):
+        found, waiting = 0, [(self.tree.root, True)]
+        while waiting:
+            node, top = waiting.pop()
+            node.is_split = False
+            if node.halves:
+                node.is_split = bits.take(1) == 1
+                require(top or not node.is_split, 6037)
+                found += node.is_split
+                waiting += [(half, node.is_split) for half in reversed(node.halves)]
+            if top and not node.is_split:
+                node.tile = len(self.tiles)
+                self.tiles.append(node)
+        require(found == splits, 6037)
+        require(bits.is_used_up(), 6038)
+
+    def read_row(self, codes):
+        """The steps of all tiles before each, and of all."""
+        steps, waiting = [], [(self.tree.root, STEPS)]
+        while waiting:
+            node, n = waiting.pop()
+            if not node.is_split:
+                steps.append(n)
+                continue
+            lower = self.lower(codes, n) if n > 0 else 0
+            waiting += [(node.halves[1], n - lower), (node.halves[0], lower)]
+        before = [0]
+        for n in steps:
+            before.append(before[-1] + n)
+        return before
+
+    def lower(self, codes, n):
+        require(8 * len(codes.data) - codes.at >= self.code_bits, 6040)
+        code = codes.take(self.code_bits)
+        if code == 0:
+            return 0
+        if code == (1 << self.code_bits) - 1:
+            return n
+        require(n >= 2, 6040)
+        return min(max(n * share(code, self.code_bits) >> 31, 1), n - 1)
+
+    def mixed(self, mixture):
+        """M: of a tile, the sum over rows of v times the steps before it."""
+        v = whole_weights([w for _, w in mixture])
+        return lambda t: sum(k * self.before[row][t] for k, (row, _) in zip(v, mixture))
+
+    @staticmethod
+    def search(M, low, high, step, number):
+        """Which of low, low + step, ... is chosen; what is left of the number."""
+        base, whole = M(low), M(high) - M(low)
+        x = number * float(whole)
+        at = base + min(math.floor(x), whole - 1)
+        chosen = max(t for t in range(low, high, step) if M(t) <= at)
+        before, after = M(chosen), M(min(chosen + step, high))
+        return chosen, clamp((x - (before - base)) / (after - before), 0, 1)
+
+    def draw(self, mixture, u):
+        M = self.mixed(mixture)
+        first, u[0] = self.search(M, 0, self.count, self.group, u[0])
+        tile, u[1] = self.search(M, first, min(first + self.group, self.count), 1, u[1])
+        return tile, (M(tile + 1) - M(tile)) / 2.0**52
+
+    def find(self, mixture, square):
+        node, M = self.tree.root, self.mixed(mixture)
+        while node.is_split:
+            node = node.halves[square[node.axis] >= node.halves[1].box[node.axis][0]]
+        return node.tile, (M(node.tile + 1) - M(node.tile)) / 2.0**52
+
+    def sample_within(self, _tree, tile, p, u, box, _s):
+        """§6.3 from a tile on: u are shares of its steps."""
+        root = node = self.tiles[tile]
+        box[:] = node.box
+        if not node.halves:
+            return p
+        step = []
+        for a, (low, high) in enumerate(root.steps):
+            u[a] = u[a] * (high - low) + low
+            step.append(min(math.floor(u[a]), high - 1))
+        while node.halves:
+            node = node.halves[step[node.axis] >= node.halves[1].steps[node.axis][0]]
+        for a, (low, high) in enumerate(node.steps):
+            u[a] = clamp((u[a] - low) / (high - low), 0, 1)
+        box[:] = node.box
+        return self.of_tile(root, node, p)
+
+    def find_within(self, _tree, tile, p, square, box, _s):
+        root = node = self.tiles[tile]
+        while node.halves:
+            node = node.halves[square[node.axis] >= node.halves[1].box[node.axis][0]]
+        box[:] = node.box
+        return self.of_tile(root, node, p)
+
+    @staticmethod
+    def of_tile(root, node, p):
+        return p if not root.halves else p * (node.probability() / root.probability())
