@@ -107,16 +107,41 @@ ACDF_INLINE const AcdfTopTile* acdf_rows_choose(const AcdfNormalRows* rows, cons
     return ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + tile;
 }
 
+/* The tile of a number. */
+ACDF_INLINE const AcdfTopTile* acdf_rows_record(const AcdfNormalRows* rows, uint32_t tile) {
+    return ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + tile;
+}
+
+/* The cell of a tile that u[2] lead to; u is rescaled to [0, 1] in it. Returns its pdf where the tile has that
+ * probability, sr^-1. */
+ACDF_INLINE double acdf_rows_sample_inside(const AcdfHalvedTree* tree, const AcdfGrid* grid,
+                                           const AcdfTopTile* tile, double probability, double u[2],
+                                           AcdfSpan box[2]) {
+    double share;
+    box[0] = tile->box[0];
+    box[1] = tile->box[1];
+    if (tile->node == ACDF_LEAF) return probability * tile->scale;
+    share = acdf_tile_descend(acdf_halvings_nodes(tree), tile, u, box);
+    return probability * share * acdf_box_scale(acdf_halved_heights(tree), grid, box);
+}
+
+/* The same of the cell that holds a grid step of each axis. */
+ACDF_INLINE double acdf_rows_find_inside(const AcdfHalvedTree* tree, const AcdfGrid* grid, const AcdfTopTile* tile,
+                                         double probability, const uint32_t position[2], AcdfSpan box[2]) {
+    double share;
+    box[0] = tile->box[0];
+    box[1] = tile->box[1];
+    if (tile->node == ACDF_LEAF) return probability * tile->scale;
+    share = acdf_tile_find(acdf_halvings_nodes(tree), tile, position, box);
+    return probability * share * acdf_box_scale(acdf_halved_heights(tree), grid, box);
+}
+
 /* The cell that u[2] lead to; u is rescaled to [0, 1] in it. Returns its pdf, sr^-1. */
 ACDF_INLINE double acdf_rows_descend(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfGrid* grid,
                                      const AcdfRowMixture* mix, double u[2], AcdfSpan box[2]) {
-    double here, share;
+    double here;
     const AcdfTopTile* tile = acdf_rows_choose(rows, mix, u, &here);
-    box[0] = tile->box[0];
-    box[1] = tile->box[1];
-    if (tile->node == ACDF_LEAF) return here * tile->scale;
-    share = acdf_tile_descend(acdf_halvings_nodes(tree), tile, u, box);
-    return here * share * acdf_box_scale(acdf_halved_heights(tree), grid, box);
+    return acdf_rows_sample_inside(tree, grid, tile, here, u, box);
 }
 
 /* The tile that holds a grid step of each axis. */
@@ -196,15 +221,9 @@ ACDF_INLINE AcdfDirectionSample acdf_rows_sample(const AcdfNormalRows* rows, con
 /* The pdf of a cell that holds a grid step of each axis, sr^-1. */
 ACDF_INLINE double acdf_rows_cell(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfGrid* grid,
                                   const AcdfRowMixture* mix, const uint32_t position[2], AcdfSpan box[2]) {
-    const uint32_t at = acdf_rows_tile(rows, position);
-    const AcdfTopTile* tile = ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + at;
-    const double here = acdf_rows_share(mix, at);
-    double share;
-    box[0] = tile->box[0];
-    box[1] = tile->box[1];
-    if (tile->node == ACDF_LEAF) return here * tile->scale;
-    share = acdf_tile_find(acdf_halvings_nodes(tree), tile, position, box);
-    return here * share * acdf_box_scale(acdf_halved_heights(tree), grid, box);
+    const uint32_t tile = acdf_rows_tile(rows, position);
+    return acdf_rows_find_inside(tree, grid, acdf_rows_record(rows, tile), acdf_rows_share(mix, tile), position,
+                                 box);
 }
 
 /* The pdf of a direction, sr^-1: exactly that of acdf_rows_sample where that returned it. */

@@ -1,4 +1,4 @@
-// Random lights of both shapes, lobes and shading points for tests of products.
+// Random lights of all shapes, lobes and shading points for tests of products.
 #pragma once
 
 #include "product/vectors/cut.h"
@@ -6,6 +6,7 @@
 #include "tests/lib/reader/local_fast_random.h"
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
+#include "tests/lib/reader/normals_builder.h"
 
 #include <acdf/product/product.h>
 
@@ -16,7 +17,7 @@
 
 namespace acdf_test::products {
 
-constexpr std::uint32_t file_count = 64; // every fourth one of the fast shape
+constexpr std::uint32_t file_count = 64; // every fourth one of the fast shape, every fourth of halvings
 
 // Small grids, so that pdfs can be summed over their squares.
 inline RandomOptions small_grid(std::uint32_t seed) {
@@ -41,8 +42,16 @@ inline LocalSpec random_fast_local(std::uint32_t seed) {
     if (seed % 3 != 0) return random.make();
     return random.make_cut_evenly(options.columns / 2, 1 + seed % 4);
 }
-inline LocalSpec random_light(std::uint32_t seed, bool tilts) {
-    return seed % 4 == 3 ? random_fast_local(seed / 4) : random_local(seed, tilts);
+// On one tree of halvings, whose rows have light at each normal.
+inline Bytes random_halved_local(std::uint32_t seed) {
+    NormalsSpec spec = random_normals(seed, small_grid(seed));
+    spec.cosine_share = 0.0f;
+    for (BinSpec& bin : spec.bins) bin = {bin.root == no_root ? 0 : bin.root, bin.share + 0.1f};
+    return spec.encode();
+}
+inline Bytes random_light(std::uint32_t seed, bool tilts) {
+    if (seed % 4 == 1) return random_halved_local(seed);
+    return seed % 4 == 3 ? random_fast_local(seed / 4).encode() : random_local(seed, tilts).encode();
 }
 
 struct Vector {
@@ -121,7 +130,7 @@ inline bool has_groups(const Sampler::Point& point) {
     return point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0;
 }
 inline bool has_cut(const Sampler::Point& point) {
-    return point.light.what == ACDF_LOCAL_BLEND && point.cut.count > 0;
+    return (point.light.what == ACDF_LOCAL_BLEND || point.light.what == ACDF_LOCAL_ROWS) && point.cut.count > 0;
 }
 
 // visit(file, lobe, sampler, point, name, random): of many files, with any number of parts, and vectors up to some;

@@ -14,7 +14,8 @@ struct LoadedLocal {
     Bytes bytes;
     acdf::File file;
 
-    explicit LoadedLocal(LocalSpec spec) : bytes(spec.encode()) {
+    explicit LoadedLocal(LocalSpec spec) : LoadedLocal(spec.encode()) {}
+    explicit LoadedLocal(Bytes of) : bytes(std::move(of)) {
         const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
         EXPECT_TRUE(status.ok()) << status.message;
     }

@@ -145,13 +145,10 @@ inline NormalsSpec small_normals() {
 }
 
 /// Any tree, any rows.
-inline NormalsSpec random_normals(std::uint32_t seed) {
+inline NormalsSpec random_normals(std::uint32_t seed, RandomOptions options) {
     std::mt19937 random(seed);
     const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
     NormalsSpec spec;
-    RandomOptions options = varied_options(seed, 512);
-    options.octahedral = seed % 3 == 0;
-    if (options.octahedral) options.rows = options.columns;
     spec.tree = RandomHalvings(seed, options).make();
     spec.subdivisions = 1 + seed % 3;
     spec.code_bits = 4 + below(9);
@@ -177,6 +174,13 @@ inline NormalsSpec random_normals(std::uint32_t seed) {
                                              : BinSpec{below(rows), 0.25f + 0.01f * float(below(100))});
     if (seed % 5 == 0) spec.cosine_share = 0.25f;
     return spec;
+}
+
+inline NormalsSpec random_normals(std::uint32_t seed) {
+    RandomOptions options = varied_options(seed, 512);
+    options.octahedral = seed % 3 == 0;
+    if (options.octahedral) options.rows = options.columns;
+    return random_normals(seed, options);
 }
 
 } // namespace acdf_test

@@ -30,8 +30,8 @@ typedef struct AcdfCutPart {
     double sum;                         /* of all weights */
     double probability;                 /* of the cut, for its maker to set */
     uint16_t node;                      /* the split, or the tile with its flag */
-    uint16_t entry;                     /* the same in runtime tables */
-    uint16_t first_light, end_light;    /* which bright tiles lie in it */
+    uint16_t entry; /* the same in runtime tables; of rows of halvings the tile behind the last one */
+    uint16_t first_light, end_light; /* which bright tiles lie in it */
     uint32_t low[2], high[2];
     uint32_t tile;  /* the first tile in it; they are numbered in the order of the traversal */
     uint16_t owner; /* 2 * split of the cut + side; of the whole: not used */
@@ -58,12 +58,48 @@ ACDF_FN double acdf_cut_bright_tiles(const AcdfCut* cut, uint32_t first, uint32_
     return sum;
 }
 
-/* The whole as one part, of probability 1. For points that bright tiles and shared tiles serve (ACDF_LOCAL_BLEND).
- */
+/* What rows of halvings give to tiles from `first` up to `end`: one number a row, and their sum. */
+ACDF_INLINE double acdf_cut_rows(const AcdfRowMixture* mix, uint32_t first, uint32_t end, double* weight) {
+    double sum = 0.0;
+    int k;
+    for (k = 0; k < ACDF_NORMALS_MIXED; ++k)
+        sum += weight[k] = mix->weight[k] * (double)(mix->steps[k][end] - mix->steps[k][first]) * 0x1p-52;
+    return sum;
+}
+
+/* Whether a cut can be made where rows of halvings serve a point: numbers of nodes and tiles have 15 bits. */
+ACDF_INLINE int acdf_cut_serves_rows(const AcdfLocal* local) {
+    return local->rows_of_normals->splits < ACDF_TILE_FLAG;
+}
+
+/* acdf_cut_begin where rows of halvings serve a point. */
+ACDF_FN void acdf_cut_begin_rows(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut) {
+    const AcdfNormalRows* rows = local->rows_of_normals;
+    AcdfCutPart* whole = &cut->part[0];
+    int k;
+    memset(whole, 0, sizeof *whole);
+    cut->count = 1;
+    cut->nearest = 0;
+    for (k = 1; k < ACDF_NORMALS_MIXED; ++k)
+        if (point->rows.weight[k] > point->rows.weight[cut->nearest]) cut->nearest = k;
+    whole->node = rows->splits ? 0 : ACDF_TILE_FLAG;
+    whole->entry = (uint16_t)(rows->splits + 1u);
+    whole->high[0] = local->environment.columns;
+    whole->high[1] = local->environment.rows;
+    whole->sum = acdf_cut_rows(&point->rows, 0, whole->entry, whole->weight);
+    whole->probability = 1.0;
+}
+
+/* The whole as one part, of probability 1. For points that bright tiles and shared tiles serve (ACDF_LOCAL_BLEND),
+ * or rows of halvings (ACDF_LOCAL_ROWS). */
 ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut) {
     AcdfCutPart* whole = &cut->part[0];
     uint32_t i;
     int k;
+    if (local->rows_of_normals) {
+        acdf_cut_begin_rows(local, point, cut);
+        return;
+    }
     cut->count = 1;
     if (acdf_local_tabled(local, point)) {
         const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local->tables);
@@ -174,21 +210,59 @@ ACDF_FN void acdf_cut_share_bright_tiles(const AcdfLocal* local, const AcdfCut* 
     part->end_light = upper->first_light = (uint16_t)(part->first_light + count);
 }
 
-/* Divides a part at its split: it becomes the lower half, and the last part is the upper one. */
-ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut, int number) {
+/* Adds a split of a part. Returns the upper half, which is the last part. */
+ACDF_INLINE AcdfCutPart* acdf_cut_add_split(AcdfCut* cut, int number, uint32_t place) {
     const int count = cut->count - 1;
     AcdfCutPart *part = &cut->part[number], *upper = &cut->part[cut->count];
-    const AcdfSplit* split = &local->blend.splits[part->node];
-    const uint32_t axis = split->place & 7u, position = split->place >> 3;
-    const uint16_t child = split->child[1];
-    double low, high;
-    cut->split[count].place = split->place;
+    cut->split[count].place = place;
     cut->split[count].child[0] = (int16_t)~number;
     cut->split[count].child[1] = (int16_t)~cut->count;
     if (count > 0) cut->split[part->owner >> 1].child[part->owner & 1u] = (int16_t)count;
     ++cut->count;
     part->owner = (uint16_t)(2 * count);
     upper->owner = (uint16_t)(2 * count + 1);
+    return upper;
+}
+
+/* A child of a split of rows, as parts number nodes. */
+ACDF_INLINE uint16_t acdf_cut_row_node(uint32_t child) {
+    return (uint16_t)((child & ACDF_TOP_TILE ? ACDF_TILE_FLAG : 0u) | (child & ~ACDF_TOP_TILE));
+}
+
+/* acdf_cut_divide where rows of halvings serve a point. */
+ACDF_FN void acdf_cut_divide_rows(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut, int number) {
+    const AcdfNormalRows* rows = local->rows_of_normals;
+    AcdfCutPart* part = &cut->part[number];
+    const AcdfRowSplit* split = ACDF_TOP_ARRAY(AcdfRowSplit, rows, rows->split) + part->node;
+    const uint32_t axis = split->place & 1u, position = split->place >> 1;
+    AcdfCutPart* upper = &cut->part[cut->count];
+    *upper = *part;
+    acdf_cut_add_split(cut, number, axis | position << 3);
+    upper->tile = split->tile;
+    part->entry = (uint16_t)split->tile;
+    part->sum = acdf_cut_rows(&point->rows, part->tile, part->entry, part->weight);
+    upper->sum = acdf_cut_rows(&point->rows, upper->tile, upper->entry, upper->weight);
+    part->high[axis] = upper->low[axis] = position;
+    part->node = acdf_cut_row_node(split->child[0]);
+    upper->node = acdf_cut_row_node(split->child[1]);
+}
+
+/* Divides a part at its split: it becomes the lower half, and the last part is the upper one. */
+ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut, int number) {
+    AcdfCutPart *part = &cut->part[number], *upper = 0;
+    const AcdfSplit* split = 0;
+    uint32_t axis, position;
+    uint16_t child;
+    double low, high;
+    if (local->rows_of_normals) {
+        acdf_cut_divide_rows(local, point, cut, number);
+        return;
+    }
+    split = &local->blend.splits[part->node];
+    axis = split->place & 7u;
+    position = split->place >> 3;
+    child = split->child[1];
+    upper = acdf_cut_add_split(cut, number, split->place);
     /* Splits are numbered as the traversal meets them, and so are tiles: as many as the splits of the lower half,
      * and one. */
     upper->tile = child & ACDF_TILE_FLAG ? child & ~ACDF_TILE_FLAG : part->tile + child - part->node;
@@ -211,15 +285,42 @@ ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* p
     }
 }
 
+/* acdf_cut_heart where rows of halvings serve a point. */
+ACDF_FN uint32_t acdf_cut_row_heart(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                                    int number, float direction[3]) {
+    const AcdfNormalRows* rows = local->rows_of_normals;
+    const uint32_t* steps = point->rows.steps[cut->nearest];
+    const AcdfCutPart* part = &cut->part[number];
+    uint32_t first = part->tile, end = part->entry, box[2][2], k;
+    uint32_t node = part->node & ACDF_TILE_FLAG ? ACDF_TOP_TILE : part->node;
+    while (!(node & ACDF_TOP_TILE)) {
+        const AcdfRowSplit* split = ACDF_TOP_ARRAY(AcdfRowSplit, rows, rows->split) + node;
+        const uint32_t upper = (uint32_t)(steps[end] - steps[split->tile] > steps[split->tile] - steps[first]);
+        if (upper) first = split->tile;
+        else end = split->tile;
+        node = split->child[upper];
+    }
+    for (k = 0; k < 2; ++k) {
+        const AcdfSpan* span = &acdf_rows_record(rows, first)->box[k];
+        box[k][0] = span->end[0];
+        box[k][1] = span->end[1];
+    }
+    acdf_box_middle(local, (const uint32_t(*)[2])box, direction);
+    return first;
+}
+
 /* A direction from which a part is lit much: of its brightest light, where bright tiles give it more than all else;
  * else the middle of the tile that is reached where the traversal always takes the half to which the nearest bin
  * gives more. Returns the tile's number. */
 ACDF_CALLED uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                     int number, float direction[3]) {
     const AcdfCutPart* part = &cut->part[number];
-    const uint16_t* codebook = local->blend.tiles->codebook;
     uint32_t node = part->node, box[2][2], k;
-    const uint8_t* row = point->mix.row[cut->nearest];
+    const uint16_t* codebook;
+    const uint8_t* row;
+    if (local->rows_of_normals) return acdf_cut_row_heart(local, point, cut, number, direction);
+    codebook = local->blend.tiles->codebook;
+    row = point->mix.row[cut->nearest];
     if (part->bright_tiles > 0.5 * part->sum) {
         uint32_t brightest = part->first_light;
         for (k = brightest + 1; k < part->end_light; ++k)

@@ -293,6 +293,49 @@ ACDF_FN const AcdfCutPart* acdf_cut_find(const AcdfCut* cut, const uint32_t* squ
     return &cut->part[~child];
 }
 
+/* The pdf of a tile of rows of halvings in a part, before its cells: its probability. */
+ACDF_INLINE double acdf_cut_row_probability(const AcdfCutPart* part, double mass, double of_part) {
+    return part->probability * (mass / of_part);
+}
+/* What a part has of rows of halvings: out of 2^52. */
+ACDF_INLINE AcdfRowPart acdf_cut_row_part(const AcdfRowMixture* mix, const AcdfCutPart* part) {
+    AcdfRowPart out;
+    out.before = acdf_rows_before(mix, mix->steps, part->tile);
+    out.mass = acdf_rows_before(mix, mix->steps, part->entry) - out.before;
+    return out;
+}
+
+/* acdf_cut_pdf where rows of halvings serve a point. */
+ACDF_FN float acdf_cut_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                               const AcdfGrid* grid, const uint32_t square[2]) {
+    const AcdfNormalRows* rows = local->rows_of_normals;
+    const AcdfCutPart* part = acdf_cut_find(cut, square);
+    const AcdfRowMixture* mix = &point->rows;
+    const AcdfRowPart of = acdf_cut_row_part(mix, part);
+    const uint32_t tile = acdf_rows_tile(rows, square);
+    const double mass = acdf_rows_before(mix, mix->steps, tile + 1u) - acdf_rows_before(mix, mix->steps, tile);
+    AcdfSpan box[2];
+    if (!(part->probability > 0.0 && mass > 0.0)) return 0.0f;
+    return acdf_float_pdf(acdf_rows_find_inside(local->environment.halved, grid, acdf_rows_record(rows, tile),
+                                                acdf_cut_row_probability(part, mass, of.mass), square, box));
+}
+
+/* acdf_cut_sample where rows of halvings serve a point: from a part, u in [0, 1]. */
+ACDF_FN AcdfDirectionSample acdf_cut_row_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                const AcdfCutPart* part, const AcdfGrid* grid, double u[2]) {
+    const AcdfNormalRows* rows = local->rows_of_normals;
+    AcdfRowPart of = acdf_cut_row_part(&point->rows, part);
+    const double of_part = of.mass;
+    const uint32_t tile = acdf_rows_search(&point->rows, point->rows.steps, part->tile, part->entry, &u[0], &of);
+    AcdfDirectionSample out;
+    AcdfSpan box[2];
+    const double p = acdf_rows_sample_inside(local->environment.halved, grid, acdf_rows_record(rows, tile),
+                                             acdf_cut_row_probability(part, of.mass, of_part), u, box);
+    acdf_box_direction(acdf_halved_heights(local->environment.halved), grid, box, u, out.direction);
+    out.pdf = acdf_float_pdf(p);
+    return out;
+}
+
 /* Pdf per steradian with which acdf_cut_sample samples `direction` (unit); of cuts that are finished. */
 ACDF_CALLED float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                const float direction[3]) {
@@ -303,6 +346,7 @@ ACDF_CALLED float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* poi
     double p;
     uint32_t square[2], tile;
     if (cut->count == 0 || !acdf_local_square(&grid, direction, square)) return 0.0f;
+    if (local->rows_of_normals) return acdf_cut_row_pdf(local, point, cut, &grid, square);
     part = acdf_cut_find(cut, square);
     if (!(part->probability > 0.0)) return 0.0f;
     mix = acdf_cut_mixture(point, part);
@@ -336,6 +380,7 @@ ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const Ac
     u[0] = acdf_cut_number(u0);
     u[1] = acdf_cut_number(u1);
     part = acdf_cut_choose_part(cut, u);
+    if (local->rows_of_normals) return acdf_cut_row_sample(local, point, part, &grid, u);
     acdf_cut_range(part, range);
     p = acdf_cut_sample_part(local, point, cut, part, u, range);
     return acdf_cut_direction_sample(local, point, cut, &grid, range, u, p);

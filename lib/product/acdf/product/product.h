@@ -104,10 +104,13 @@ private:
     ACDF_METHOD void light_pdfs(const Point& point, std::size_t count, const float (*directions)[3],
                                 float* out) const noexcept;
     ACDF_METHOD static float mixed(const Point& point, float light, float lobe) noexcept;
+    /// Whether a cut through a tree is sampled from.
+    ACDF_METHOD static bool samples_cut(const Point& point) noexcept {
+        return point.light.what == ACDF_LOCAL_BLEND || (point.light.what == ACDF_LOCAL_ROWS && point.cut.count > 0);
+    }
     /// Whether a cut is sampled from, and the lobe.
     ACDF_METHOD static bool samples_both(const Point& point) noexcept {
-        return (point.light.what == ACDF_LOCAL_BLEND || samples_groups(point)) && point.share >= 0.0 &&
-               point.share < 1.0;
+        return (samples_cut(point) || samples_groups(point)) && point.share >= 0.0 && point.share < 1.0;
     }
     ACDF_METHOD static bool samples_groups(const Point& point) noexcept {
         return point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0;
@@ -144,7 +147,8 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
     }
     point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
     const PointOfLobe<AnyLobe> of_lobe = {light_, point.light, point.frame, lobe_, point.lobe, parts_, vectors_};
-    if (point.light.what == ACDF_LOCAL_BLEND) {
+    if (point.light.what == ACDF_LOCAL_BLEND ||
+        (point.light.what == ACDF_LOCAL_ROWS && acdf_cut_serves_rows(&light_))) {
         point.share = CutRating<AnyLobe>(of_lobe, point.cut).make();
     } else if (point.light.what == ACDF_LOCAL_FAST) {
         point.fast.whole = 0;
@@ -157,7 +161,7 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
 template <class AnyLobe>
 ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const float direction[3]) const noexcept {
     if (!(point.share >= 0.0 && point.share < 1.0)) return 0.0f;
-    if (point.light.what == ACDF_LOCAL_BLEND) return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
+    if (samples_cut(point)) return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
     if (samples_groups(point)) return acdf_fast_cut_pdf(&light_, &point.light, &point.fast, direction);
     return acdf_local_pdf_at(&light_, &point.light, direction);
 }
@@ -165,7 +169,7 @@ ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const f
 template <class AnyLobe>
 ACDF_METHOD void ProductSampler<AnyLobe>::light_samples(const Point& point, std::size_t count, const double (*u)[2],
                                                         ProductSample* out) const noexcept {
-    if (point.light.what == ACDF_LOCAL_BLEND) {
+    if (samples_cut(point)) {
         acdf_cut_sample_batch(vectors_, &light_, &point.light, &point.cut, u, count, out);
         return;
     }
@@ -174,7 +178,7 @@ ACDF_METHOD void ProductSampler<AnyLobe>::light_samples(const Point& point, std:
 template <class AnyLobe>
 ACDF_METHOD void ProductSampler<AnyLobe>::light_pdfs(const Point& point, std::size_t count,
                                                      const float (*directions)[3], float* out) const noexcept {
-    if (point.light.what == ACDF_LOCAL_BLEND) {
+    if (samples_cut(point)) {
         acdf_cut_pdf_batch(vectors_, &light_, &point.light, &point.cut, directions, count, out);
         return;
     }
@@ -209,7 +213,7 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
         return out;
     }
     const double rest = (u - point.share) / (1.0 - point.share);
-    if (point.light.what == ACDF_LOCAL_BLEND) {
+    if (samples_cut(point)) {
         out = acdf_cut_sample(&light_, &point.light, &point.cut, rest, u1);
     } else if (samples_groups(point)) {
         out = acdf_fast_cut_sample(&light_, &point.light, &point.fast, rest, u1);
