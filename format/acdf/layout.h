@@ -198,9 +198,10 @@ typedef struct AcdfMapsHeader {
 typedef struct AcdfNormalsHeader {
     uint32_t row_count;
     uint32_t split_count; /* halvings with a code for each row: the top of the tree */
-    uint32_t code_bits;   /* ACDF_LEAST_MAP_CODE_BITS to ACDF_MOST_CODE_BITS */
+    uint32_t code_bits;   /* ACDF_LEAST_MAP_CODE_BITS to ACDF_MOST_ROW_CODE_BITS */
     uint32_t reserved;    /* 0 */
 } AcdfNormalsHeader;
+#define ACDF_MOST_ROW_CODE_BITS 8u
 #define ACDF_MOST_NORMAL_RATIO 256u /* rows times splits, at most, over the bytes of NORM */
 
 typedef struct AcdfMap {

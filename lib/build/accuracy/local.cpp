@@ -129,10 +129,24 @@ private:
         }
     }
 
+    void spread_rows(const AcdfRowMixture& mix, std::vector<double>& out) const {
+        const AcdfNormalRows* const rows = local_.rows_of_normals;
+        const auto below = [&](const auto& self, std::uint32_t node, AcdfRowSteps steps) -> void {
+            if (node & ACDF_TOP_TILE) {
+                out[node & ~ACDF_TOP_TILE] = acdf_rows_mass(&mix, &steps) * 0x1p-52;
+                return;
+            }
+            const AcdfRowSplit& split = acdf_row_splits(rows)[node];
+            self(self, acdf_row_half(rows, &split, 0), acdf_rows_divide(rows, &mix, node, &steps));
+            self(self, acdf_row_half(rows, &split, 1), steps);
+        };
+        for (std::uint32_t group = 0; group < rows->groups; ++group)
+            below(below, acdf_row_group(rows, group), acdf_rows_of_group(rows, &mix, group));
+    }
+
     std::vector<double> tile_probabilities(const AcdfLocalPoint& source) const {
         std::vector<double> out(boxes_.size());
-        if (source.what == ACDF_LOCAL_ROWS)
-            for (std::uint32_t t = 0; t < out.size(); ++t) out[t] = acdf_rows_share(&source.rows, t);
+        if (source.what == ACDF_LOCAL_ROWS) spread_rows(source.rows, out);
         else if (source.what == ACDF_LOCAL_FAST) spread_sums(source, out);
         else spread(boxes_.size() > 1 ? 0 : ACDF_TILE_FLAG, source.mix, source.sum, out);
         for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)

@@ -2,10 +2,10 @@
  * own, below that all share (SPEC.md §10.7). A normal samples from the mixture of the rows around it. Part of
  * acdf/local.h.
  *
- * Where codes of rows end there are tiles, numbered in the order of the tree. u[0] chooses a group of tiles that
- * follow one another, u[1] a tile in it: two short searches. Numbers that lead a row to a tile are whole, out of
- * 2^31, and so are weights of rows, out of 2^21: sums of their products are exact in doubles, and the pdf of a
- * direction is the one that samples have. */
+ * Where codes of rows end there are tiles, numbered in the order of the tree. u[0] chooses a group of tiles, which
+ * is a small tree of splits, by a short search; u[1] goes down that tree, whose codes stand together. Numbers that
+ * lead a row to a node are whole, out of 2^31, and so are weights of rows, out of 2^21: sums of their products are
+ * exact in doubles, and the pdf of a direction is the one that samples have. */
 #ifndef ACDF_NORMAL_ROWS_H
 #define ACDF_NORMAL_ROWS_H
 
@@ -17,12 +17,12 @@ extern "C" {
 
 enum { ACDF_NORMALS_MIXED = 3 };
 
-/* A split at the top of the tree, where each row has a code of its own. They stand in preorder, and tiles are
- * numbered in the order in which they are met. */
+/* A split at the top of the tree, where each row has a code of its own. They stand in preorder. */
 typedef struct AcdfRowSplit {
-    uint32_t place;    /* bit 0: axis; bits 1 to 31: where it lies, in grid steps */
+    uint32_t place;    /* bit 0: axis; bit 1: it is in no group; bits 2 to 31: where it lies, in grid steps */
+    uint32_t child[2]; /* lower and upper half: a later split, or ACDF_TOP_TILE | a tile; of splits that are in no
+                        * group ACDF_TOP_TILE | a group */
     uint32_t tile;     /* the first tile of the upper half */
-    uint32_t child[2]; /* lower and upper half: a later split, or ACDF_TOP_TILE | a tile */
 } AcdfRowSplit;
 
 /* Tables of an open file, beside its tree of halvings: flat words without pointers, offsets in words from the start
@@ -30,87 +30,180 @@ typedef struct AcdfRowSplit {
 typedef struct AcdfNormalRows {
     uint32_t words; /* of all */
     uint32_t rows, splits;
-    uint32_t split;      /* AcdfRowSplit[splits] */
-    uint32_t tiles;      /* AcdfTopTile[splits + 1] */
-    uint32_t stride;     /* words of a row */
-    uint32_t steps;      /* uint32[rows][stride]: the steps that lead to all tiles before each, and to all */
-    uint32_t group_bits; /* a group has 2^group_bits tiles, the last one fewer */
-    uint32_t groups;
+    uint32_t split;        /* AcdfRowSplit[splits] */
+    uint32_t tiles;        /* AcdfTopTile[splits + 1] */
+    uint32_t stride;       /* bytes of a row of codes */
+    uint32_t codes;        /* uint8[rows][stride]: of each split; 0 where the row leads no numbers to it */
+    uint32_t shares;       /* uint32[256]: acdf_halving_share of each code */
+    uint32_t last;         /* code */
+    uint32_t groups;       /* of tiles */
+    uint32_t group;        /* uint32[groups]: the split, or ACDF_TOP_TILE | the tile, that a group is */
     uint32_t group_stride; /* words of a row of ends */
-    uint32_t ends;   /* uint32[rows][group_stride]: the steps that lead to all groups before each, and to all */
-    uint32_t bits;   /* the lookup grid has squares of 2^-bits of each axis, in rows of axis 0; 0: there is none */
-    uint32_t starts; /* uint32: of each square the deepest split that holds it, or ACDF_TOP_TILE | a tile */
+    uint32_t ends; /* uint32[rows][group_stride]: the steps that lead to all groups before each, and to all */
+    uint32_t bits; /* the lookup grid has squares of 2^-bits of each axis, in rows of axis 0; 0: there is none */
+    uint32_t
+        starts; /* uint32: of each square the deepest split in no group that holds it, or ACDF_TOP_TILE | a group */
     uint32_t position_scale[2]; /* step * scale / 2^32 is the square of a grid step */
 } AcdfNormalRows;
 
 /* The rows around a normal, and what of all samples each has: whole numbers that add up to ACDF_WEIGHTS. */
 typedef struct AcdfRowMixture {
-    const uint32_t* steps[ACDF_NORMALS_MIXED]; /* to tiles */
-    const uint32_t* ends[ACDF_NORMALS_MIXED];  /* to groups */
+    const uint8_t* codes[ACDF_NORMALS_MIXED];
+    const uint32_t* ends[ACDF_NORMALS_MIXED];
     double weight[ACDF_NORMALS_MIXED];
 } AcdfRowMixture;
+
+/* Steps of each row of a mixture. */
+typedef struct AcdfRowSteps {
+    uint32_t of[ACDF_NORMALS_MIXED];
+} AcdfRowSteps;
+
+ACDF_INLINE const AcdfRowSplit* acdf_row_splits(const AcdfNormalRows* rows) {
+    return ACDF_TOP_ARRAY(AcdfRowSplit, rows, rows->split);
+}
+ACDF_INLINE const AcdfTopTile* acdf_row_tile(const AcdfNormalRows* rows, uint32_t tile) {
+    return ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + tile;
+}
+/* The split, or ACDF_TOP_TILE | the tile, that a group is. */
+ACDF_INLINE uint32_t acdf_row_group(const AcdfNormalRows* rows, uint32_t group) {
+    return ACDF_TOP_ARRAY(uint32_t, rows, rows->group)[group];
+}
+/* A half of a split: a split, or ACDF_TOP_TILE | a tile. */
+ACDF_INLINE uint32_t acdf_row_half(const AcdfNormalRows* rows, const AcdfRowSplit* split, uint32_t upper) {
+    const uint32_t child = split->child[upper];
+    return (split->place & 2u) && (child & ACDF_TOP_TILE) ? acdf_row_group(rows, child & ~ACDF_TOP_TILE) : child;
+}
 
 /* Mixes rows by weights, some > 0. */
 ACDF_INLINE void acdf_rows_mix(const AcdfNormalRows* rows, const uint32_t* row, const double* weight, int count,
                                AcdfRowMixture* out) {
+    uint32_t at;
     int i;
     for (i = 0; i < ACDF_NORMALS_MIXED; ++i) {
-        const int known = i < count ? i : 0;
-        out->steps[i] = ACDF_TOP_ARRAY(uint32_t, rows, rows->steps) + (size_t)row[known] * rows->stride;
-        out->ends[i] = ACDF_TOP_ARRAY(uint32_t, rows, rows->ends) + (size_t)row[known] * rows->group_stride;
+        const size_t number = row[i < count ? i : 0];
+        out->codes[i] =
+            (const uint8_t*)(const void*)ACDF_TOP_ARRAY(uint32_t, rows, rows->codes) + number * rows->stride;
+        out->ends[i] = ACDF_TOP_ARRAY(uint32_t, rows, rows->ends) + number * rows->group_stride;
         out->weight[i] = i < count ? weight[i] : 0.0;
+        for (at = 0; at <= rows->groups; at += 16u) ACDF_PREFETCH(out->ends[i] + at);
     }
     acdf_whole_weights(out->weight, (uint32_t)count);
 }
 
-/* What of a mixture leads to all before an index of its arrays: a whole number, out of 2^52. */
-ACDF_INLINE double acdf_rows_before(const AcdfRowMixture* mix, const uint32_t* const* arrays, uint32_t index) {
-    double sum = mix->weight[0] * (double)arrays[0][index];
+/* What a mixture has of steps of its rows: a whole number, out of 2^52. */
+ACDF_INLINE double acdf_rows_mass(const AcdfRowMixture* mix, const AcdfRowSteps* steps) {
+    double sum = mix->weight[0] * (double)steps->of[0];
     int k;
-    for (k = 1; k < ACDF_NORMALS_MIXED; ++k) sum += mix->weight[k] * (double)arrays[k][index];
+    for (k = 1; k < ACDF_NORMALS_MIXED; ++k) sum += mix->weight[k] * (double)steps->of[k];
     return sum;
 }
 
-/* A part of an axis of random numbers: what lies before it, and what of all it has. Out of 2^52. */
-typedef struct AcdfRowPart {
-    double before, mass;
-} AcdfRowPart;
+/* Of so many steps those that a code gives to the lower half. */
+ACDF_INLINE uint32_t acdf_row_lower(const uint32_t* shares, uint32_t last, uint32_t code, uint32_t steps) {
+    const uint32_t inside = (uint32_t)(code - 1u < last - 1u) & (uint32_t)(steps > 0u);
+    const uint32_t lower = (uint32_t)((uint64_t)steps * shares[code] >> 31);
+    const uint32_t least = lower + (inside & (uint32_t)(lower == 0u));
+    return least - (inside & (uint32_t)(least == steps));
+}
 
-/* The part that *u of `of` leads to, among those from index `low` up to `high`, some of which have a mass. *u is
- * rescaled to [0, 1] in it, and `of` becomes it. Returns its index. */
-ACDF_INLINE uint32_t acdf_rows_search(const AcdfRowMixture* mix, const uint32_t* const* arrays, uint32_t low,
-                                      uint32_t high, double* u, AcdfRowPart* of) {
-    const double x = *u * of->mass, whole = floor(x), at = of->before + (whole < of->mass ? whole : of->mass - 1.0);
-    double below = of->before, above = of->before + of->mass;
+/* The steps of the lower half of a split; those of the node become those of the upper half. */
+ACDF_INLINE AcdfRowSteps acdf_rows_divide(const AcdfNormalRows* rows, const AcdfRowMixture* mix, uint32_t split,
+                                          AcdfRowSteps* steps) {
+    const uint32_t* shares = ACDF_TOP_ARRAY(uint32_t, rows, rows->shares);
+    AcdfRowSteps lower;
+    int k;
+    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) {
+        lower.of[k] = acdf_row_lower(shares, rows->last, mix->codes[k][split], steps->of[k]);
+        steps->of[k] -= lower.of[k];
+    }
+    return lower;
+}
+
+/* The tile below a node of some steps, not all 0, that *u leads to; *u is rescaled to [0, 1] in it, and the steps
+ * become its own. */
+ACDF_INLINE uint32_t acdf_rows_sample_below(const AcdfNormalRows* rows, const AcdfRowMixture* mix, uint32_t node,
+                                            AcdfRowSteps* steps, double* u) {
+    const AcdfRowSplit* splits = acdf_row_splits(rows);
+    double mass = acdf_rows_mass(mix, steps), x = *u * mass, whole = (double)(int64_t)x, below = 0.0;
+    if (!(whole < mass)) whole = mass - 1.0;
+    while (!(node & ACDF_TOP_TILE)) {
+        const AcdfRowSteps lower = acdf_rows_divide(rows, mix, node, steps);
+        const double of_lower = acdf_rows_mass(mix, &lower);
+        const uint32_t upper = (uint32_t)(whole - below >= of_lower);
+        if (upper) below += of_lower, mass -= of_lower;
+        else mass = of_lower, *steps = lower;
+        node = acdf_row_half(rows, &splits[node], upper);
+    }
+    *u = acdf_clamp((x - below) / mass, 0.0, 1.0);
+    return node & ~ACDF_TOP_TILE;
+}
+
+/* The tile below a node of some steps that holds a grid step of each axis; the steps become its own. */
+ACDF_INLINE uint32_t acdf_rows_find_below(const AcdfNormalRows* rows, const AcdfRowMixture* mix, uint32_t node,
+                                          AcdfRowSteps* steps, const uint32_t position[2]) {
+    const AcdfRowSplit* splits = acdf_row_splits(rows);
+    while (!(node & ACDF_TOP_TILE)) {
+        const AcdfRowSplit* split = &splits[node];
+        const AcdfRowSteps lower = acdf_rows_divide(rows, mix, node, steps);
+        const uint32_t upper = (uint32_t)(position[split->place & 1u] >= split->place >> 2);
+        if (!upper) *steps = lower;
+        node = acdf_row_half(rows, split, upper);
+    }
+    return node & ~ACDF_TOP_TILE;
+}
+
+/* What of a mixture leads to all groups before one. */
+ACDF_INLINE double acdf_rows_before(const AcdfRowMixture* mix, uint32_t group) {
+    AcdfRowSteps steps;
+    int k;
+    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) steps.of[k] = mix->ends[k][group];
+    return acdf_rows_mass(mix, &steps);
+}
+
+/* The steps that lead to a group. Asks for its codes. */
+ACDF_INLINE AcdfRowSteps acdf_rows_of_group(const AcdfNormalRows* rows, const AcdfRowMixture* mix, uint32_t group) {
+    const uint32_t node = acdf_row_group(rows, group);
+    AcdfRowSteps steps;
+    int k;
+    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) {
+        if (!(node & ACDF_TOP_TILE)) ACDF_PREFETCH(mix->codes[k] + node);
+        steps.of[k] = mix->ends[k][group + 1u] - mix->ends[k][group];
+    }
+    return steps;
+}
+
+/* The group that *u leads to; *u is rescaled to [0, 1] in it. */
+ACDF_INLINE uint32_t acdf_rows_sample_group(const AcdfNormalRows* rows, const AcdfRowMixture* mix, double* u) {
+    const double x = *u * 0x1p52, whole = (double)(int64_t)x, at = whole < 0x1p52 ? whole : 0x1p52 - 1.0;
+    double below = 0.0, above = 0x1p52;
+    uint32_t low = 0, high = rows->groups;
     while (high - low > 1u) {
         const uint32_t middle = (low + high) >> 1;
-        const double before = acdf_rows_before(mix, arrays, middle);
+        const double before = acdf_rows_before(mix, middle);
         if (at >= before) low = middle, below = before;
         else high = middle, above = before;
     }
-    *u = acdf_clamp((x - (below - of->before)) / (above - below), 0.0, 1.0);
-    of->before = below;
-    of->mass = above - below;
+    *u = acdf_clamp((x - below) / (above - below), 0.0, 1.0);
     return low;
 }
 
-/* The tile that u[2] lead to, which are rescaled to [0, 1] in it. *share becomes its part of all. */
-ACDF_INLINE const AcdfTopTile* acdf_rows_choose(const AcdfNormalRows* rows, const AcdfRowMixture* mix, double u[2],
-                                                double* share) {
-    AcdfRowPart part = {0.0, 0x1p52};
-    const uint32_t group = acdf_rows_search(mix, mix->ends, 0, rows->groups, &u[0], &part);
-    const uint32_t first = group << rows->group_bits, size = 1u << rows->group_bits,
-                   left = rows->splits + 1u - first;
-    const uint32_t tile =
-        acdf_rows_search(mix, mix->steps, first, first + (size < left ? size : left), &u[1], &part);
-    *share = part.mass * 0x1p-52;
-    return ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + tile;
+/* The group that holds a grid step of each axis. */
+ACDF_INLINE uint32_t acdf_rows_find_group(const AcdfNormalRows* rows, const uint32_t position[2]) {
+    const AcdfRowSplit* splits = acdf_row_splits(rows);
+    uint32_t at = rows->groups > 1u ? 0 : ACDF_TOP_TILE;
+    if (rows->bits) {
+        const uint32_t x = (uint32_t)((uint64_t)position[0] * rows->position_scale[0] >> 32);
+        const uint32_t y = (uint32_t)((uint64_t)position[1] * rows->position_scale[1] >> 32);
+        at = ACDF_TOP_ARRAY(uint32_t, rows, rows->starts)[y << rows->bits | x];
+    }
+    while (!(at & ACDF_TOP_TILE)) {
+        const AcdfRowSplit* split = &splits[at];
+        at = split->child[position[split->place & 1u] >= split->place >> 2];
+    }
+    return at & ~ACDF_TOP_TILE;
 }
 
-/* The tile of a number. */
-ACDF_INLINE const AcdfTopTile* acdf_rows_record(const AcdfNormalRows* rows, uint32_t tile) {
-    return ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + tile;
-}
+/* ---- cells in a tile -------------------------------------------------------------------------------------- */
 
 /* The cell of a tile that u[2] lead to; u is rescaled to [0, 1] in it. Returns its pdf where the tile has that
  * probability, sr^-1. */
@@ -136,94 +229,43 @@ ACDF_INLINE double acdf_rows_find_inside(const AcdfHalvedTree* tree, const AcdfG
     return probability * share * acdf_box_scale(acdf_halved_heights(tree), grid, box);
 }
 
-/* The cell that u[2] lead to; u is rescaled to [0, 1] in it. Returns its pdf, sr^-1. */
-ACDF_INLINE double acdf_rows_descend(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfGrid* grid,
-                                     const AcdfRowMixture* mix, double u[2], AcdfSpan box[2]) {
-    double here;
-    const AcdfTopTile* tile = acdf_rows_choose(rows, mix, u, &here);
-    return acdf_rows_sample_inside(tree, grid, tile, here, u, box);
+/* A direction that u in [0, 1] pick in a tile of some probability. */
+ACDF_INLINE AcdfDirectionSample acdf_rows_direction(const AcdfHalvedTree* tree, const AcdfGrid* grid,
+                                                    const AcdfTopTile* tile, double probability, double u[2]) {
+    AcdfDirectionSample out;
+    AcdfSpan box[2];
+    out.pdf = acdf_float_pdf(acdf_rows_sample_inside(tree, grid, tile, probability, u, box));
+    acdf_box_direction(acdf_halved_heights(tree), grid, box, u, out.direction);
+    return out;
 }
 
-/* The tile that holds a grid step of each axis. */
-ACDF_INLINE uint32_t acdf_rows_tile(const AcdfNormalRows* rows, const uint32_t position[2]) {
-    const AcdfRowSplit* splits = ACDF_TOP_ARRAY(AcdfRowSplit, rows, rows->split);
-    uint32_t at = rows->splits ? 0 : ACDF_TOP_TILE;
-    if (rows->bits) {
-        const uint32_t x = (uint32_t)((uint64_t)position[0] * rows->position_scale[0] >> 32);
-        const uint32_t y = (uint32_t)((uint64_t)position[1] * rows->position_scale[1] >> 32);
-        at = ACDF_TOP_ARRAY(uint32_t, rows, rows->starts)[y << rows->bits | x];
-    }
-    while (!(at & ACDF_TOP_TILE)) {
-        const AcdfRowSplit* split = &splits[at];
-        at = split->child[position[split->place & 1u] >= split->place >> 1];
-    }
-    return at & ~ACDF_TOP_TILE;
-}
-
-/* What a mixture gives to a tile, of all. */
-ACDF_INLINE double acdf_rows_share(const AcdfRowMixture* mix, uint32_t tile) {
-    double sum = 0.0;
-    int k;
-    for (k = 0; k < ACDF_NORMALS_MIXED; ++k)
-        sum += mix->weight[k] * (double)(mix->steps[k][tile + 1u] - mix->steps[k][tile]);
-    return sum * 0x1p-52;
-}
-
-/* The cell that holds a grid step of each axis, and its probability. */
-ACDF_INLINE double acdf_rows_find(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfRowMixture* mix,
-                                  const uint32_t position[2], AcdfSpan box[2]) {
-    const uint32_t at = acdf_rows_tile(rows, position);
-    const AcdfTopTile* tile = ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + at;
-    const double here = acdf_rows_share(mix, at);
-    box[0] = tile->box[0];
-    box[1] = tile->box[1];
-    if (tile->node == ACDF_LEAF || !(here > 0.0)) return here;
-    return here * acdf_tile_find(acdf_halvings_nodes(tree), tile, position, box);
-}
-
-/* The same, and the random numbers that lead to the cell. */
-ACDF_FN double acdf_rows_strata(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfRowMixture* mix,
-                                const uint32_t position[2], AcdfRange range[2], AcdfStratum strata[2]) {
-    const uint32_t at = acdf_rows_tile(rows, position), group = at >> rows->group_bits;
-    const AcdfTopTile* tile = ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles) + at;
-    const double before = acdf_rows_before(mix, mix->ends, group),
-                 of_group = acdf_rows_before(mix, mix->ends, group + 1u) - before, here = acdf_rows_share(mix, at);
-    AcdfSpan box[2], steps[2];
-    int axis;
-    for (axis = 0; axis < 2; ++axis) steps[axis] = tile->steps[axis], box[axis] = tile->box[axis];
-    if (tile->node != ACDF_LEAF) acdf_halvings_find(acdf_halvings_nodes(tree), tile->node, position, steps, box);
-    acdf_halved_ranges(box, range);
-    if (!(here > 0.0)) return 0.0;
-    strata[0].low = before * 0x1p-52;
-    strata[0].width = of_group * 0x1p-52;
-    strata[1].low = (acdf_rows_before(mix, mix->steps, at) - before) / of_group;
-    strata[1].width = here * 0x1p52 / of_group;
-    if (tile->node == ACDF_LEAF) return here;
-    for (axis = 0; axis < 2; ++axis) {
-        const double wide = (double)(tile->steps[axis].end[1] - tile->steps[axis].end[0]);
-        strata[axis].low += strata[axis].width * ((double)(steps[axis].end[0] - tile->steps[axis].end[0]) / wide);
-        strata[axis].width *= (double)(steps[axis].end[1] - steps[axis].end[0]) / wide;
-    }
-    return here * (acdf_steps_in(steps) / acdf_steps_in(tile->steps));
-}
+/* ---- samples and pdfs ------------------------------------------------------------------------------------- */
 
 /* Samples a direction by u in [0, 1]. */
 ACDF_INLINE AcdfDirectionSample acdf_rows_sample(const AcdfNormalRows* rows, const AcdfHalvedTree* tree,
                                                  const AcdfGrid* grid, const AcdfRowMixture* mix, double u[2]) {
-    AcdfDirectionSample out;
-    AcdfSpan box[2];
-    const double p = acdf_rows_descend(rows, tree, grid, mix, u, box);
-    acdf_box_direction(acdf_halved_heights(tree), grid, box, u, out.direction);
-    out.pdf = acdf_float_pdf(p);
-    return out;
+    const uint32_t group = acdf_rows_sample_group(rows, mix, &u[0]);
+    AcdfRowSteps steps = acdf_rows_of_group(rows, mix, group);
+    const uint32_t tile = acdf_rows_sample_below(rows, mix, acdf_row_group(rows, group), &steps, &u[1]);
+    return acdf_rows_direction(tree, grid, acdf_row_tile(rows, tile), acdf_rows_mass(mix, &steps) * 0x1p-52, u);
+}
+
+/* What a mixture gives to the tile that holds a grid step of each axis, of all. Returns its number. */
+ACDF_INLINE uint32_t acdf_rows_find_tile(const AcdfNormalRows* rows, const AcdfRowMixture* mix,
+                                         const uint32_t position[2], double* share) {
+    const uint32_t group = acdf_rows_find_group(rows, position);
+    AcdfRowSteps steps = acdf_rows_of_group(rows, mix, group);
+    const uint32_t tile = acdf_rows_find_below(rows, mix, acdf_row_group(rows, group), &steps, position);
+    *share = acdf_rows_mass(mix, &steps) * 0x1p-52;
+    return tile;
 }
 
 /* The pdf of a cell that holds a grid step of each axis, sr^-1. */
 ACDF_INLINE double acdf_rows_cell(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfGrid* grid,
                                   const AcdfRowMixture* mix, const uint32_t position[2], AcdfSpan box[2]) {
-    const uint32_t tile = acdf_rows_tile(rows, position);
-    return acdf_rows_find_inside(tree, grid, acdf_rows_record(rows, tile), acdf_rows_share(mix, tile), position,
-                                 box);
+    double share;
+    const uint32_t tile = acdf_rows_find_tile(rows, mix, position, &share);
+    return acdf_rows_find_inside(tree, grid, acdf_row_tile(rows, tile), share, position, box);
 }
 
 /* The pdf of a direction, sr^-1: exactly that of acdf_rows_sample where that returned it. */
@@ -244,6 +286,56 @@ ACDF_INLINE float acdf_rows_pdf(const AcdfNormalRows* rows, const AcdfHalvedTree
     }
     if (!acdf_grid_square(grid, direction, square, at)) return 0.0f;
     return acdf_float_pdf(acdf_rows_cell(rows, tree, grid, mix, square, box));
+}
+
+/* The cell that holds a grid step of each axis, and its probability. */
+ACDF_FN double acdf_rows_find(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfRowMixture* mix,
+                              const uint32_t position[2], AcdfSpan box[2]) {
+    double share;
+    const AcdfTopTile* tile = acdf_row_tile(rows, acdf_rows_find_tile(rows, mix, position, &share));
+    box[0] = tile->box[0];
+    box[1] = tile->box[1];
+    if (tile->node == ACDF_LEAF || !(share > 0.0)) return share;
+    return share * acdf_tile_find(acdf_halvings_nodes(tree), tile, position, box);
+}
+
+/* The same, and the random numbers that lead to the cell. */
+ACDF_FN double acdf_rows_strata(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfRowMixture* mix,
+                                const uint32_t position[2], AcdfRange range[2], AcdfStratum strata[2]) {
+    const AcdfRowSplit* splits = acdf_row_splits(rows);
+    const uint32_t group = acdf_rows_find_group(rows, position);
+    AcdfRowSteps steps = acdf_rows_of_group(rows, mix, group);
+    const double of_group = acdf_rows_mass(mix, &steps);
+    uint32_t node = acdf_row_group(rows, group);
+    const AcdfTopTile* tile;
+    double below = 0.0, mass;
+    AcdfSpan box[2], inside[2];
+    int axis;
+    while (!(node & ACDF_TOP_TILE)) {
+        const AcdfRowSplit* split = &splits[node];
+        const AcdfRowSteps lower = acdf_rows_divide(rows, mix, node, &steps);
+        const uint32_t upper = (uint32_t)(position[split->place & 1u] >= split->place >> 2);
+        if (upper) below += acdf_rows_mass(mix, &lower);
+        else steps = lower;
+        node = acdf_row_half(rows, split, upper);
+    }
+    tile = acdf_row_tile(rows, node & ~ACDF_TOP_TILE);
+    mass = acdf_rows_mass(mix, &steps);
+    for (axis = 0; axis < 2; ++axis) inside[axis] = tile->steps[axis], box[axis] = tile->box[axis];
+    if (tile->node != ACDF_LEAF) acdf_halvings_find(acdf_halvings_nodes(tree), tile->node, position, inside, box);
+    acdf_halved_ranges(box, range);
+    if (!(mass > 0.0)) return 0.0;
+    strata[0].low = acdf_rows_before(mix, group) * 0x1p-52;
+    strata[0].width = of_group * 0x1p-52;
+    strata[1].low = below / of_group;
+    strata[1].width = mass / of_group;
+    if (tile->node == ACDF_LEAF) return mass * 0x1p-52;
+    for (axis = 0; axis < 2; ++axis) {
+        const double wide = (double)(tile->steps[axis].end[1] - tile->steps[axis].end[0]);
+        strata[axis].low += strata[axis].width * ((double)(inside[axis].end[0] - tile->steps[axis].end[0]) / wide);
+        strata[axis].width *= (double)(inside[axis].end[1] - inside[axis].end[0]) / wide;
+    }
+    return mass * 0x1p-52 * (acdf_steps_in(inside) / acdf_steps_in(tile->steps));
 }
 
 #ifdef __cplusplus

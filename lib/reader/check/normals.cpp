@@ -17,7 +17,7 @@ bool check_normal_counts(const Payload& payload, const AcdfNormalsHeader& normal
     const bool right =
         normals.row_count > 0 && normals.row_count <= parts.description->bin_count &&
         normals.split_count <= parts.halving_count && normals.code_bits >= ACDF_LEAST_MAP_CODE_BITS &&
-        normals.code_bits <= ACDF_MOST_CODE_BITS && normals.reserved == 0 &&
+        normals.code_bits <= ACDF_MOST_ROW_CODE_BITS && normals.reserved == 0 &&
         u64{normals.row_count} * (normals.split_count + u64{2}) <= ACDF_MOST_NORMAL_RATIO * payload.size;
     if (!right)
         report.add(6039, payload.at(0), "%u rows, %u splits, codes of %u bits", normals.row_count,
@@ -30,7 +30,7 @@ void check_normal_codes(const Payload& payload, u64 begin, const AcdfNormalsHead
     RowCodes codes(parts.halvings, payload.data + sizeof normals, normals.code_bits);
     Bits bits(payload, begin, payload.size);
     for (u32 row = 0; normals.split_count > 0 && row < normals.row_count; ++row)
-        if (!codes.row(bits, [](u32, u32) {}))
+        if (!codes.row(bits, [](u32, u32, u32) {}))
             return report.add(6040, bits.place(), "row %u: %s", row, codes.wrong);
     if (bits.has(32)) return report.add(6039, bits.place(), "bytes are left");
     while (bits.has(1))

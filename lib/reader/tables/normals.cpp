@@ -13,142 +13,222 @@ using u64 = std::uint64_t;
 
 u64 to_row_line(u64 words) { return (words + 15) / 16 * 16; }
 
-class NormalRowsMaker {
+// The least power of two whose square is at least a number of tiles: about as many groups as tiles in each.
+u32 most_of_group(u64 tiles) {
+    u32 most = 1;
+    while (u64{most} * most < tiles) most *= 2;
+    return most;
+}
+
+// Goes through the top of the tree in preorder: groups are its largest parts of at most so many tiles.
+class TopWalk {
 public:
-    NormalRowsMaker(const Parts& parts, const double* heights, AcdfNormalRows* rows)
-        : parts_(parts), heights_(heights), rows_(rows), splits_(array<AcdfRowSplit>(rows->split)),
-          tiles_(array<AcdfTopTile>(rows->tiles)),
-          codes_(parts.halvings, parts.normal_splits, parts.normals->code_bits) {}
-
-    void run() {
-        make_splits();
-        make_steps();
-        fill_top_starts(
-            rows_->bits, rows_->position_scale, array<u32>(rows_->starts),
-            [&](u32 at, u32& axis, u32& middle) { axis = splits_[at].place & 1u, middle = splits_[at].place >> 1; },
-            [&](u32 at, bool upper) { return splits_[at].child[upper]; });
-    }
-
-private:
     struct Open {
         u32 node;
         u32 parent; // and side: 2 split + upper
+        bool grouped;
         AcdfSpan steps[2], box[2];
     };
     static constexpr u32 no_parent = 0xFFFFFFFFu;
+
+    TopWalk(const Parts& parts, const RowCodes& codes)
+        : parts_(parts), codes_(codes), most_(most_of_group(parts.normals->split_count + u64{1})) {}
+
+    // Calls group(at) for each that begins one, then split(at) or tile(at).
+    template <class Group, class Split, class Tile>
+    void run(const Group& group, const Split& split, const Tile& tile) {
+        u32 waiting = 0, splits = 0;
+        open_[waiting++] = root();
+        while (waiting > 0) {
+            Open at = open_[--waiting];
+            if (!at.grouped && tiles_below(at.node) <= most_) {
+                group(at);
+                at.grouped = true;
+            }
+            if (!is_split(at.node)) {
+                tile(at);
+                continue;
+            }
+            const AcdfHalving halving = parts_.halvings[at.node];
+            const u32 axis = halving.link & 7u, middle = acdf_span_middle(&at.box[axis]);
+            split(at, axis, middle);
+            for (u32 upper = 2; upper-- > 0;) {
+                Open half = at;
+                half.node =
+                    halving.link >> (3 + upper) & 1u ? ACDF_LEAF : at.node + (upper ? halving.link >> 5 : 1);
+                half.parent = 2 * splits + upper;
+                half.steps[axis].end[1 - upper] = halving.threshold;
+                half.box[axis].end[1 - upper] = middle;
+                open_[waiting++] = half;
+            }
+            ++splits;
+        }
+    }
+
+    bool is_split(u32 node) const { return node != ACDF_LEAF && codes_.has_codes(node); }
+
+private:
+    Open root() const {
+        Open out = {};
+        out.node = parts_.halving_count ? 0 : ACDF_LEAF;
+        out.parent = no_parent;
+        for (u32 axis = 0; axis < 2; ++axis) {
+            out.steps[axis] = {{0, ACDF_STEPS}};
+            out.box[axis] = {{0, parts_.axes[axis].resolution}};
+        }
+        return out;
+    }
+
+    u64 tiles_below(u32 node) const {
+        u32 open[most_open_halvings], waiting = 0;
+        u64 count = 1;
+        if (is_split(node)) open[waiting++] = node;
+        for (; waiting > 0; ++count) {
+            const u32 at = open[--waiting], link = parts_.halvings[at].link;
+            if (!(link >> 3 & 1u) && codes_.has_codes(at + 1)) open[waiting++] = at + 1;
+            if (!(link >> 4 & 1u) && codes_.has_codes(at + (link >> 5))) open[waiting++] = at + (link >> 5);
+        }
+        return count;
+    }
+
+    const Parts& parts_;
+    const RowCodes& codes_;
+    u32 most_;
+    Open open_[most_open_halvings];
+};
+
+class NormalRowsMaker {
+public:
+    NormalRowsMaker(const Parts& parts, RowCodes& codes, const double* heights, AcdfNormalRows* rows)
+        : parts_(parts), codes_(codes), heights_(heights), rows_(rows), splits_(array<AcdfRowSplit>(rows->split)) {}
+
+    void run() {
+        make_splits();
+        for (u32 r = 0; r < rows_->rows; ++r) make_row(r);
+        u32* const shares = array<u32>(rows_->shares);
+        for (u32 code = 0; code <= rows_->last; ++code)
+            shares[code] = acdf_halving_share(code, parts_.normals->code_bits);
+        if (rows_->groups > 1)
+            fill_top_starts(
+                rows_->bits, rows_->position_scale, array<u32>(rows_->starts),
+                [&](u32 at, u32& axis, u32& middle) {
+                    axis = splits_[at].place & 1u;
+                    middle = splits_[at].place >> 2;
+                },
+                [&](u32 at, bool upper) { return splits_[at].child[upper]; });
+    }
+
+private:
+    using Open = TopWalk::Open;
 
     template <class T>
     T* array(u32 offset) const {
         return reinterpret_cast<T*>(reinterpret_cast<u32*>(rows_) + offset);
     }
 
-    // In preorder, in which splits and tiles are numbered.
+    // `tiles`: how many there are before.
+    void link(const Open& at, u32 child, u32 tiles) {
+        if (at.parent == TopWalk::no_parent) return;
+        AcdfRowSplit& parent = splits_[at.parent >> 1];
+        parent.child[at.parent & 1u] = child;
+        if (at.parent & 1u) parent.tile = tiles;
+    }
+
+    // Splits, tiles and groups are numbered in preorder.
     void make_splits() {
-        u32 waiting = 0, split_count = 0, tile_count = 0;
-        Open root = {};
-        root.node = parts_.halving_count ? 0 : ACDF_LEAF;
-        root.parent = no_parent;
-        for (u32 axis = 0; axis < 2; ++axis) {
-            root.steps[axis] = {{0, ACDF_STEPS}};
-            root.box[axis] = {{0, parts_.axes[axis].resolution}};
-        }
-        open_[waiting++] = root;
-        while (waiting > 0) {
-            const Open at = open_[--waiting];
-            const bool is_split = at.node != ACDF_LEAF && codes_.has_codes(at.node);
-            if (at.parent != no_parent) {
-                AcdfRowSplit& parent = splits_[at.parent >> 1];
-                parent.child[at.parent & 1u] = is_split ? split_count : ACDF_TOP_TILE | tile_count;
-                if (at.parent & 1u) parent.tile = tile_count;
-            }
-            if (!is_split) {
-                put_tile(at, tile_count++);
-                continue;
-            }
-            const AcdfHalving halving = parts_.halvings[at.node];
-            const u32 axis = halving.link & 7u, middle = acdf_span_middle(&at.box[axis]);
-            splits_[split_count].place = axis | middle << 1;
-            for (u32 upper = 2; upper-- > 0;) {
-                Open half = at;
-                half.node =
-                    halving.link >> (3 + upper) & 1u ? ACDF_LEAF : at.node + (upper ? halving.link >> 5 : 1);
-                half.parent = 2 * split_count + upper;
-                half.steps[axis].end[1 - upper] = halving.threshold;
-                half.box[axis].end[1 - upper] = middle;
-                open_[waiting++] = half;
-            }
-            ++split_count;
-        }
+        u32 splits = 0, tiles = 0, groups = 0;
+        bool begins = false; // a group: its parent leads to that
+        TopWalk walk(parts_, codes_);
+        walk.run(
+            [&](const Open& at) {
+                array<u32>(rows_->group)[groups] = walk.is_split(at.node) ? splits : ACDF_TOP_TILE | tiles;
+                link(at, ACDF_TOP_TILE | groups++, tiles);
+                begins = true;
+            },
+            [&](const Open& at, u32 axis, u32 middle) {
+                if (!begins) link(at, splits, tiles);
+                splits_[splits++].place = axis | (at.grouped ? 0u : 2u) | middle << 2;
+                begins = false;
+            },
+            [&](const Open& at) {
+                if (!begins) link(at, ACDF_TOP_TILE | tiles, tiles);
+                put_tile(at, tiles++);
+                begins = false;
+            });
     }
 
     void put_tile(const Open& at, u32 number) {
         const AcdfGrid grid = {parts_.axes[ACDF_AXIS_PHI].resolution, parts_.axes[ACDF_AXIS_THETA].resolution,
                                parts_.description->parameterization};
-        tiles_[number] = {
+        array<AcdfTopTile>(rows_->tiles)[number] = {
             acdf_box_scale(heights_, &grid, at.box), at.node, {at.steps[0], at.steps[1]}, {at.box[0], at.box[1]}};
     }
 
-    void make_steps() {
-        const u64 begin = 4 * words_for(parts_.halving_count);
-        const Payload codes = {parts_.normal_splits, parts_.normals_size, 0, false};
-        Bits bits(codes, begin, codes.size);
-        for (u32 r = 0; r < rows_->rows; ++r) {
-            u32* const row = array<u32>(rows_->steps) + u64{r} * rows_->stride;
-            u32 split = 0;
-            row[0] = 0;
-            row[rows_->splits + 1] = ACDF_STEPS;
-            if (rows_->splits == 0) continue;
-            codes_.row(bits, [&](u32 before, u32 lower) { row[splits_[split++].tile] = before + lower; });
-        }
-        for (u32 r = 0; r < rows_->rows; ++r) {
-            const u32* const row = array<u32>(rows_->steps) + u64{r} * rows_->stride;
-            u32* const ends = array<u32>(rows_->ends) + u64{r} * rows_->group_stride;
-            for (u32 group = 0; group < rows_->groups; ++group) ends[group] = row[group << rows_->group_bits];
-            ends[rows_->groups] = ACDF_STEPS;
-        }
+    void make_row(u32 row) {
+        auto* const codes = reinterpret_cast<std::uint8_t*>(array<u32>(rows_->codes)) + u64{row} * rows_->stride;
+        u32 *const ends = array<u32>(rows_->ends) + u64{row} * rows_->group_stride, split = 0;
+        ends[0] = 0;
+        ends[rows_->groups] = ACDF_STEPS;
+        if (rows_->splits == 0) return;
+        codes_.row(bits_, [&](u32 before, u32 lower, u32 code) {
+            const AcdfRowSplit& at = splits_[split];
+            for (u32 upper = 0; at.place & 2u && upper < 2; ++upper)
+                if (at.child[upper] & ACDF_TOP_TILE)
+                    ends[at.child[upper] & ~ACDF_TOP_TILE] = before + (upper ? lower : 0);
+            codes[split++] = static_cast<std::uint8_t>(code);
+        });
     }
 
     const Parts& parts_;
+    RowCodes& codes_;
     const double* heights_;
     AcdfNormalRows* rows_;
     AcdfRowSplit* splits_;
-    AcdfTopTile* tiles_;
-    RowCodes codes_;
-    Open open_[most_open_halvings];
+    const Payload payload_ = {parts_.normal_splits, parts_.normals_size, 0, false};
+    Bits bits_{payload_, 4 * words_for(parts_.halving_count), parts_.normals_size};
 };
+
+// Offsets in words; false where there are too many.
+bool lay_out(const Parts& parts, AcdfNormalRows& out) {
+    const u64 count = out.rows, splits = out.splits;
+    u64 at = to_row_line(sizeof out / 4);
+    const auto place = [&at](u32& offset, u64 words) {
+        offset = static_cast<u32>(at);
+        at = to_row_line(at + words);
+    };
+    const u64 stride = to_row_line(words_for(8 * splits)), group_stride = to_row_line(out.groups + u64{1});
+    place(out.split, splits * (sizeof(AcdfRowSplit) / 4));
+    place(out.tiles, (splits + 1) * (sizeof(AcdfTopTile) / 4));
+    place(out.shares, 256);
+    place(out.group, out.groups);
+    place(out.starts, out.bits ? u64{1} << 2 * out.bits : 0);
+    place(out.ends, count * group_stride);
+    place(out.codes, count * stride);
+    out.stride = static_cast<u32>(4 * stride);
+    out.group_stride = static_cast<u32>(group_stride);
+    out.words = static_cast<u32>(at);
+    for (u32 axis = 0; axis < 2; ++axis)
+        out.position_scale[axis] = top_position_scale(parts.axes[axis].resolution, out.bits);
+    return at <= 0xFFFFFFFFu && at <= SIZE_MAX / 4;
+}
 
 } // namespace
 
 AcdfNormalRows* make_normal_rows(const Parts& parts, bool lookup, const double* heights,
                                  const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
-    const u64 count = parts.normals->row_count, splits = parts.normals->split_count;
+    RowCodes codes(parts.halvings, parts.normal_splits, parts.normals->code_bits);
     AcdfNormalRows out = {};
     out.rows = parts.normals->row_count;
     out.splits = parts.normals->split_count;
-    if (lookup) out.bits = top_lookup_bits(parts, out.splits);
-    const u64 split = to_row_line(sizeof out / 4), tiles = to_row_line(split + splits * (sizeof(AcdfRowSplit) / 4)),
-              starts = to_row_line(tiles + (splits + 1) * (sizeof(AcdfTopTile) / 4)),
-              steps = to_row_line(starts + (out.bits ? u64{1} << 2 * out.bits : 0)),
-              stride = to_row_line(splits + 2), ends = steps + count * stride;
-    while (u64{1} << 2 * out.group_bits < splits + 1) ++out.group_bits; // as many groups as tiles in each, about
-    out.groups = static_cast<u32>((splits >> out.group_bits) + 1);
-    const u64 group_stride = to_row_line(u64{out.groups} + 1), words = ends + count * group_stride;
-    if (words > 0xFFFFFFFFu || words > SIZE_MAX / 4) return nullptr;
-    block = take_block(allocator, static_cast<std::size_t>(4 * words));
+    out.last = (1u << parts.normals->code_bits) - 1;
+    TopWalk(parts, codes).run([&](const auto&) { ++out.groups; }, [](const auto&, u32, u32) {}, [](const auto&) {});
+    if (lookup && out.groups > 1) out.bits = top_lookup_bits(parts, out.groups);
+    if (!lay_out(parts, out)) return nullptr;
+    block = take_block(allocator, 4 * std::size_t{out.words});
     if (!block.data) return nullptr;
-    out.words = static_cast<u32>(words);
-    out.split = static_cast<u32>(split);
-    out.tiles = static_cast<u32>(tiles);
-    out.starts = static_cast<u32>(starts);
-    out.steps = static_cast<u32>(steps);
-    out.stride = static_cast<u32>(stride);
-    out.ends = static_cast<u32>(ends);
-    out.group_stride = static_cast<u32>(group_stride);
-    for (u32 axis = 0; axis < 2; ++axis)
-        out.position_scale[axis] = top_position_scale(parts.axes[axis].resolution, out.bits);
     auto* rows = static_cast<AcdfNormalRows*>(block.data);
     *rows = out;
-    NormalRowsMaker(parts, heights, rows).run();
+    NormalRowsMaker(parts, codes, heights, rows).run();
     return rows;
 }
 

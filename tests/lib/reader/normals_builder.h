@@ -151,7 +151,7 @@ inline NormalsSpec random_normals(std::uint32_t seed, RandomOptions options) {
     NormalsSpec spec;
     spec.tree = RandomHalvings(seed, options).make();
     spec.subdivisions = 1 + seed % 3;
-    spec.code_bits = 4 + below(9);
+    spec.code_bits = 4 + below(5);
     std::vector<bool> top{true}; // of the nodes that wait
     for (const HalvingSpec& node : spec.tree.halvings.nodes) {
         const bool above = top.back();

@@ -30,8 +30,8 @@ typedef struct AcdfCutPart {
     double sum;                         /* of all weights */
     double probability;                 /* of the cut, for its maker to set */
     uint16_t node;                      /* the split, or the tile with its flag */
-    uint16_t entry; /* the same in runtime tables; of rows of halvings the tile behind the last one */
-    uint16_t first_light, end_light; /* which bright tiles lie in it */
+    uint16_t entry;                     /* the same in runtime tables */
+    uint16_t first_light, end_light;    /* which bright tiles lie in it */
     uint32_t low[2], high[2];
     uint32_t tile;  /* the first tile in it; they are numbered in the order of the traversal */
     uint16_t owner; /* 2 * split of the cut + side; of the whole: not used */
@@ -58,23 +58,35 @@ ACDF_FN double acdf_cut_bright_tiles(const AcdfCut* cut, uint32_t first, uint32_
     return sum;
 }
 
-/* What rows of halvings give to tiles from `first` up to `end`: one number a row, and their sum. */
-ACDF_INLINE double acdf_cut_rows(const AcdfRowMixture* mix, uint32_t first, uint32_t end, double* weight) {
-    double sum = 0.0;
-    int k;
-    for (k = 0; k < ACDF_NORMALS_MIXED; ++k)
-        sum += weight[k] = mix->weight[k] * (double)(mix->steps[k][end] - mix->steps[k][first]) * 0x1p-52;
-    return sum;
-}
-
 /* Whether a cut can be made where rows of halvings serve a point: numbers of nodes and tiles have 15 bits. */
 ACDF_INLINE int acdf_cut_serves_rows(const AcdfLocal* local) {
     return local->rows_of_normals->splits < ACDF_TILE_FLAG;
 }
 
+/* A node of rows of halvings, as parts number it, and back. */
+ACDF_INLINE uint16_t acdf_cut_of_node(uint32_t node) {
+    return (uint16_t)((node & ACDF_TOP_TILE ? ACDF_TILE_FLAG : 0u) | (node & ~ACDF_TOP_TILE));
+}
+ACDF_INLINE uint32_t acdf_cut_node(const AcdfCutPart* part) {
+    return part->node & ACDF_TILE_FLAG ? ACDF_TOP_TILE | (part->node & ~ACDF_TILE_FLAG) : part->node;
+}
+
+/* The steps of rows of halvings that lead to a part: its weights are these. */
+ACDF_INLINE AcdfRowSteps acdf_cut_steps(const AcdfCutPart* part) {
+    AcdfRowSteps steps;
+    int k;
+    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) steps.of[k] = (uint32_t)part->weight[k];
+    return steps;
+}
+ACDF_INLINE void acdf_cut_set_steps(const AcdfRowMixture* mix, const AcdfRowSteps* steps, AcdfCutPart* part) {
+    int k;
+    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) part->weight[k] = (double)steps->of[k];
+    part->sum = acdf_rows_mass(mix, steps) * 0x1p-52;
+}
+
 /* acdf_cut_begin where rows of halvings serve a point. */
 ACDF_FN void acdf_cut_begin_rows(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut) {
-    const AcdfNormalRows* rows = local->rows_of_normals;
+    const AcdfRowSteps all = {{ACDF_STEPS, ACDF_STEPS, ACDF_STEPS}};
     AcdfCutPart* whole = &cut->part[0];
     int k;
     memset(whole, 0, sizeof *whole);
@@ -82,11 +94,10 @@ ACDF_FN void acdf_cut_begin_rows(const AcdfLocal* local, const AcdfLocalPoint* p
     cut->nearest = 0;
     for (k = 1; k < ACDF_NORMALS_MIXED; ++k)
         if (point->rows.weight[k] > point->rows.weight[cut->nearest]) cut->nearest = k;
-    whole->node = rows->splits ? 0 : ACDF_TILE_FLAG;
-    whole->entry = (uint16_t)(rows->splits + 1u);
+    whole->node = local->rows_of_normals->splits ? 0 : ACDF_TILE_FLAG;
     whole->high[0] = local->environment.columns;
     whole->high[1] = local->environment.rows;
-    whole->sum = acdf_cut_rows(&point->rows, 0, whole->entry, whole->weight);
+    acdf_cut_set_steps(&point->rows, &all, whole);
     whole->probability = 1.0;
 }
 
@@ -224,27 +235,21 @@ ACDF_INLINE AcdfCutPart* acdf_cut_add_split(AcdfCut* cut, int number, uint32_t p
     return upper;
 }
 
-/* A child of a split of rows, as parts number nodes. */
-ACDF_INLINE uint16_t acdf_cut_row_node(uint32_t child) {
-    return (uint16_t)((child & ACDF_TOP_TILE ? ACDF_TILE_FLAG : 0u) | (child & ~ACDF_TOP_TILE));
-}
-
 /* acdf_cut_divide where rows of halvings serve a point. */
 ACDF_FN void acdf_cut_divide_rows(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut, int number) {
     const AcdfNormalRows* rows = local->rows_of_normals;
-    AcdfCutPart* part = &cut->part[number];
-    const AcdfRowSplit* split = ACDF_TOP_ARRAY(AcdfRowSplit, rows, rows->split) + part->node;
-    const uint32_t axis = split->place & 1u, position = split->place >> 1;
-    AcdfCutPart* upper = &cut->part[cut->count];
+    AcdfCutPart *part = &cut->part[number], *upper = &cut->part[cut->count];
+    const AcdfRowSplit* split = &acdf_row_splits(rows)[part->node];
+    const uint32_t axis = split->place & 1u, position = split->place >> 2;
+    AcdfRowSteps steps = acdf_cut_steps(part), lower = acdf_rows_divide(rows, &point->rows, part->node, &steps);
     *upper = *part;
     acdf_cut_add_split(cut, number, axis | position << 3);
-    upper->tile = split->tile;
-    part->entry = (uint16_t)split->tile;
-    part->sum = acdf_cut_rows(&point->rows, part->tile, part->entry, part->weight);
-    upper->sum = acdf_cut_rows(&point->rows, upper->tile, upper->entry, upper->weight);
+    acdf_cut_set_steps(&point->rows, &lower, part);
+    acdf_cut_set_steps(&point->rows, &steps, upper);
     part->high[axis] = upper->low[axis] = position;
-    part->node = acdf_cut_row_node(split->child[0]);
-    upper->node = acdf_cut_row_node(split->child[1]);
+    part->node = acdf_cut_of_node(acdf_row_half(rows, split, 0));
+    upper->node = acdf_cut_of_node(acdf_row_half(rows, split, 1));
+    upper->tile = split->tile;
 }
 
 /* Divides a part at its split: it becomes the lower half, and the last part is the upper one. */
@@ -285,28 +290,23 @@ ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* p
     }
 }
 
-/* acdf_cut_heart where rows of halvings serve a point. */
+/* acdf_cut_heart where rows of halvings serve a point: the middle of the tile that is reached where the traversal
+ * always takes the half to which the row of most weight gives more. */
 ACDF_FN uint32_t acdf_cut_row_heart(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                     int number, float direction[3]) {
     const AcdfNormalRows* rows = local->rows_of_normals;
-    const uint32_t* steps = point->rows.steps[cut->nearest];
-    const AcdfCutPart* part = &cut->part[number];
-    uint32_t first = part->tile, end = part->entry, box[2][2], k;
-    uint32_t node = part->node & ACDF_TILE_FLAG ? ACDF_TOP_TILE : part->node;
-    while (!(node & ACDF_TOP_TILE)) {
-        const AcdfRowSplit* split = ACDF_TOP_ARRAY(AcdfRowSplit, rows, rows->split) + node;
-        const uint32_t upper = (uint32_t)(steps[end] - steps[split->tile] > steps[split->tile] - steps[first]);
-        if (upper) first = split->tile;
-        else end = split->tile;
-        node = split->child[upper];
-    }
+    const uint32_t* shares = ACDF_TOP_ARRAY(uint32_t, rows, rows->shares);
+    const uint8_t* codes = point->rows.codes[cut->nearest];
+    uint32_t node = acdf_cut_node(&cut->part[number]), box[2][2], k;
+    while (!(node & ACDF_TOP_TILE))
+        node = acdf_row_half(rows, &acdf_row_splits(rows)[node], (uint32_t)(shares[codes[node]] < ACDF_STEPS / 2u));
+    node &= ~ACDF_TOP_TILE;
     for (k = 0; k < 2; ++k) {
-        const AcdfSpan* span = &acdf_rows_record(rows, first)->box[k];
-        box[k][0] = span->end[0];
-        box[k][1] = span->end[1];
+        box[k][0] = acdf_row_tile(rows, node)->box[k].end[0];
+        box[k][1] = acdf_row_tile(rows, node)->box[k].end[1];
     }
     acdf_box_middle(local, (const uint32_t(*)[2])box, direction);
-    return first;
+    return node;
 }
 
 /* A direction from which a part is lit much: of its brightest light, where bright tiles give it more than all else;

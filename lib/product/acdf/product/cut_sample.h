@@ -293,16 +293,11 @@ ACDF_FN const AcdfCutPart* acdf_cut_find(const AcdfCut* cut, const uint32_t* squ
     return &cut->part[~child];
 }
 
-/* The pdf of a tile of rows of halvings in a part, before its cells: its probability. */
-ACDF_INLINE double acdf_cut_row_probability(const AcdfCutPart* part, double mass, double of_part) {
-    return part->probability * (mass / of_part);
-}
-/* What a part has of rows of halvings: out of 2^52. */
-ACDF_INLINE AcdfRowPart acdf_cut_row_part(const AcdfRowMixture* mix, const AcdfCutPart* part) {
-    AcdfRowPart out;
-    out.before = acdf_rows_before(mix, mix->steps, part->tile);
-    out.mass = acdf_rows_before(mix, mix->steps, part->entry) - out.before;
-    return out;
+/* What a part gives to a tile of rows of halvings, whose steps are those, of all. */
+ACDF_INLINE double acdf_cut_row_probability(const AcdfLocalPoint* point, const AcdfCutPart* part,
+                                            const AcdfRowSteps* steps) {
+    const AcdfRowSteps all = acdf_cut_steps(part);
+    return part->probability * (acdf_rows_mass(&point->rows, steps) / acdf_rows_mass(&point->rows, &all));
 }
 
 /* acdf_cut_pdf where rows of halvings serve a point. */
@@ -310,30 +305,24 @@ ACDF_FN float acdf_cut_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* poi
                                const AcdfGrid* grid, const uint32_t square[2]) {
     const AcdfNormalRows* rows = local->rows_of_normals;
     const AcdfCutPart* part = acdf_cut_find(cut, square);
-    const AcdfRowMixture* mix = &point->rows;
-    const AcdfRowPart of = acdf_cut_row_part(mix, part);
-    const uint32_t tile = acdf_rows_tile(rows, square);
-    const double mass = acdf_rows_before(mix, mix->steps, tile + 1u) - acdf_rows_before(mix, mix->steps, tile);
+    AcdfRowSteps steps;
+    uint32_t tile;
     AcdfSpan box[2];
-    if (!(part->probability > 0.0 && mass > 0.0)) return 0.0f;
-    return acdf_float_pdf(acdf_rows_find_inside(local->environment.halved, grid, acdf_rows_record(rows, tile),
-                                                acdf_cut_row_probability(part, mass, of.mass), square, box));
+    if (!(part->probability > 0.0)) return 0.0f;
+    steps = acdf_cut_steps(part);
+    tile = acdf_rows_find_below(rows, &point->rows, acdf_cut_node(part), &steps, square);
+    return acdf_float_pdf(acdf_rows_find_inside(local->environment.halved, grid, acdf_row_tile(rows, tile),
+                                                acdf_cut_row_probability(point, part, &steps), square, box));
 }
 
 /* acdf_cut_sample where rows of halvings serve a point: from a part, u in [0, 1]. */
 ACDF_FN AcdfDirectionSample acdf_cut_row_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                 const AcdfCutPart* part, const AcdfGrid* grid, double u[2]) {
     const AcdfNormalRows* rows = local->rows_of_normals;
-    AcdfRowPart of = acdf_cut_row_part(&point->rows, part);
-    const double of_part = of.mass;
-    const uint32_t tile = acdf_rows_search(&point->rows, point->rows.steps, part->tile, part->entry, &u[0], &of);
-    AcdfDirectionSample out;
-    AcdfSpan box[2];
-    const double p = acdf_rows_sample_inside(local->environment.halved, grid, acdf_rows_record(rows, tile),
-                                             acdf_cut_row_probability(part, of.mass, of_part), u, box);
-    acdf_box_direction(acdf_halved_heights(local->environment.halved), grid, box, u, out.direction);
-    out.pdf = acdf_float_pdf(p);
-    return out;
+    AcdfRowSteps steps = acdf_cut_steps(part);
+    const uint32_t tile = acdf_rows_sample_below(rows, &point->rows, acdf_cut_node(part), &steps, &u[1]);
+    return acdf_rows_direction(local->environment.halved, grid, acdf_row_tile(rows, tile),
+                               acdf_cut_row_probability(point, part, &steps), u);
 }
 
 /* Pdf per steradian with which acdf_cut_sample samples `direction` (unit); of cuts that are finished. */

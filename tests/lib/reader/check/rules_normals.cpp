@@ -65,7 +65,7 @@ std::vector<Case> normals_cases() {
         {6039, "more_rows_than_bins", normals_field(0, 4, 7)},
         {6039, "more_splits_than_there_are_halvings", normals_field(4, 4, 4)},
         {6039, "rows_of_3_code_bits", normals_field(8, 4, 3)},
-        {6039, "rows_of_13_code_bits", normals_field(8, 4, 13)},
+        {6039, "rows_of_9_code_bits", normals_field(8, 4, 9)},
         {6039, "reserved", normals_field(12, 4, 1)},
         {6039, "too_many_for_their_bytes",
          [] {
