@@ -27,7 +27,7 @@ class NormalRows:
         self.row_count, splits, self.code_bits, reserved = struct.unpack_from("<4I", data)
         codes_at = 16 + 4 * words(tree.count)
         require(len(data) >= codes_at and reserved == 0, 6039)
-        require(1 <= self.row_count <= bin_count and splits <= tree.count and 4 <= self.code_bits <= 12, 6039)
+        require(1 <= self.row_count <= bin_count and splits <= tree.count and 4 <= self.code_bits <= 8, 6039)
         require(self.row_count * (splits + 2) <= 256 * len(data), 6039)
         self.tiles = []
         self.read_splits(Bits(data[16:codes_at]), splits)
@@ -36,9 +36,25 @@ class NormalRows:
         self.before = [self.read_row(codes) for _ in range(self.row_count)]
         require(8 * len(codes.data) - codes.at < 32, 6039)
         require(codes.is_used_up(), 6038)
-        self.group = 1
-        while self.group * self.group < self.count:
-            self.group *= 2
+        most = 1
+        while most * most < self.count:
+            most *= 2
+        self.groups = self.groups_below(tree.root, most)
+
+    def tiles_below(self, node):
+        return sum(map(self.tiles_below, node.halves)) if node.is_split else 1
+
+    def groups_below(self, node, most):
+        """Pairs of a node and its first tile."""
+        if self.tiles_below(node) <= most:
+            return [(node, self.first_tile(node))]
+        return [group for half in node.halves for group in self.groups_below(half, most)]
+
+    @staticmethod
+    def first_tile(node):
+        while node.is_split:
+            node = node.halves[0]
+        return node.tile
 
     def read_splits(self, bits, splits):
         found, waiting = 0, [(self.tree.root, True)]
@@ -86,21 +102,25 @@ class NormalRows:
         v = whole_weights([w for _, w in mixture])
         return lambda t: sum(k * self.before[row][t] for k, (row, _) in zip(v, mixture))
 
-    @staticmethod
-    def search(M, low, high, step, number):
-        """Which of low, low + step, ... is chosen; what is left of the number."""
-        base, whole = M(low), M(high) - M(low)
-        x = number * float(whole)
-        at = base + min(math.floor(x), whole - 1)
-        chosen = max(t for t in range(low, high, step) if M(t) <= at)
-        before, after = M(chosen), M(min(chosen + step, high))
-        return chosen, clamp((x - (before - base)) / (after - before), 0, 1)
-
     def draw(self, mixture, u):
         M = self.mixed(mixture)
-        first, u[0] = self.search(M, 0, self.count, self.group, u[0])
-        tile, u[1] = self.search(M, first, min(first + self.group, self.count), 1, u[1])
-        return tile, (M(tile + 1) - M(tile)) / 2.0**52
+        x = u[0] * 2.0**52
+        at = min(math.floor(x), 2**52 - 1)
+        node, first = [group for group in self.groups if M(group[1]) <= at][-1]
+        c = M(first + self.tiles_below(node)) - M(first)
+        u[0] = clamp((x - M(first)) / c, 0, 1)
+        x = u[1] * float(c)
+        m = min(math.floor(x), c - 1)
+        while node.is_split:
+            upper = self.first_tile(node.halves[1])
+            L = M(upper) - M(first)
+            is_upper = m >= L
+            if is_upper:
+                x, m, first = x - L, m - L, upper
+            node = node.halves[is_upper]
+        c = M(first + 1) - M(first)
+        u[1] = clamp(x / c, 0, 1)
+        return first, c / 2.0**52
 
     def find(self, mixture, square):
         node, M = self.tree.root, self.mixed(mixture)

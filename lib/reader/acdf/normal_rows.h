@@ -16,6 +16,8 @@ extern "C" {
 #endif
 
 enum { ACDF_NORMALS_MIXED = 3 };
+#define ACDF_STEPS_OF_ANY_CODE                                                                                     \
+    0x20000u /* any code but the first and the last leads some of so many to both halves */
 
 /* A split at the top of the tree, where each row has a code of its own. They stand in preorder. */
 typedef struct AcdfRowSplit {
@@ -100,10 +102,12 @@ ACDF_INLINE double acdf_rows_mass(const AcdfRowMixture* mix, const AcdfRowSteps*
 
 /* Of so many steps those that a code gives to the lower half. */
 ACDF_INLINE uint32_t acdf_row_lower(const uint32_t* shares, uint32_t last, uint32_t code, uint32_t steps) {
-    const uint32_t inside = (uint32_t)(code - 1u < last - 1u) & (uint32_t)(steps > 0u);
-    const uint32_t lower = (uint32_t)((uint64_t)steps * shares[code] >> 31);
-    const uint32_t least = lower + (inside & (uint32_t)(lower == 0u));
-    return least - (inside & (uint32_t)(least == steps));
+    uint32_t lower = (uint32_t)((uint64_t)steps * shares[code] >> 31);
+    if (steps < ACDF_STEPS_OF_ANY_CODE && code != 0 && code != last && steps > 0) { /* at least one for each half */
+        if (lower == 0) lower = 1;
+        if (lower == steps) --lower;
+    }
+    return lower;
 }
 
 /* The steps of the lower half of a split; those of the node become those of the upper half. */
