@@ -191,7 +191,9 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
     if (point->what == ACDF_LOCAL_NOTHING) return 0.0f;
     if (point->what == ACDF_LOCAL_ROWS) {
         const AcdfGrid grid = acdf_environment_grid(&local->environment);
-        return acdf_rows_pdf(local->rows_of_normals, local->environment.halved, &grid, &point->rows, direction);
+        const AcdfRowSpot at = acdf_rows_spot(local->rows_of_normals, &grid, direction);
+        return acdf_rows_pdf(local->rows_of_normals, local->environment.halved, &grid, &point->rows, &at,
+                             direction);
     }
     if (local->environment.halved) return acdf_environment_halved_pdf(&local->environment, direction);
     spot = acdf_local_spot(
@@ -285,9 +287,22 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_fast_pdf(const AcdfLocal* local, const 
     share = acdf_local_fast_find(local, &point, tile, square, range);
     return acdf_local_fast_cell_pdf(local, &grid, range, &share);
 }
+/* The pdf for a normal of a single call by rows of halvings. */
+ACDF_OUTLINE_ON_CPU float acdf_local_new_rows_pdf(const AcdfLocal* local, const float normal[3],
+                                                  const float direction[3]) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    const AcdfRowSpot spot = acdf_rows_spot(local->rows_of_normals, &grid, direction);
+    AcdfLocalPoint point;
+    acdf_local_at(local, normal, &point);
+    if (point.what != ACDF_LOCAL_ROWS) return acdf_local_pdf_at(local, &point, direction);
+    return acdf_local_combined_pdf(
+        local, &point, direction,
+        acdf_rows_pdf(local->rows_of_normals, local->environment.halved, &grid, &point.rows, &spot, direction));
+}
 /* Pdf per steradian with which acdf_local_sample samples `direction` (unit) for that normal. */
 ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {
-    if (local->tables && !local->rows_of_normals)
+    if (local->rows_of_normals) return acdf_local_new_rows_pdf(local, normal, direction);
+    if (local->tables)
         return local->fast.grid ? acdf_local_new_fast_pdf(local, normal, direction)
                                 : acdf_local_new_pdf(local, normal, direction);
     return acdf_local_any_new_pdf(local, normal, direction);

@@ -254,49 +254,70 @@ ACDF_INLINE AcdfDirectionSample acdf_rows_sample(const AcdfNormalRows* rows, con
     return acdf_rows_direction(tree, grid, acdf_row_tile(rows, tile), acdf_rows_mass(mix, &steps) * 0x1p-52, u);
 }
 
-/* What a mixture gives to the tile that holds a grid step of each axis, of all. Returns its number. */
-ACDF_INLINE uint32_t acdf_rows_find_tile(const AcdfNormalRows* rows, const AcdfRowMixture* mix,
+/* What a mixture gives to the tile of a group that holds a grid step of each axis, of all. Returns its number. */
+ACDF_INLINE uint32_t acdf_rows_find_tile(const AcdfNormalRows* rows, const AcdfRowMixture* mix, uint32_t group,
                                          const uint32_t position[2], double* share) {
-    const uint32_t group = acdf_rows_find_group(rows, position);
     AcdfRowSteps steps = acdf_rows_of_group(rows, mix, group);
     const uint32_t tile = acdf_rows_find_below(rows, mix, acdf_row_group(rows, group), &steps, position);
     *share = acdf_rows_mass(mix, &steps) * 0x1p-52;
     return tile;
 }
 
-/* The pdf of a cell that holds a grid step of each axis, sr^-1. */
+/* Where a direction lies, which does not depend on the normal: it is looked for first, so that what both need comes
+ * at once. */
+typedef struct AcdfRowSpot {
+    uint32_t square[2], group;
+    float position[2], error[2]; /* of floats, where they are near enough */
+    int nearly, valid;
+} AcdfRowSpot;
+
+ACDF_INLINE AcdfRowSpot acdf_rows_spot(const AcdfNormalRows* rows, const AcdfGrid* grid, const float direction[3]) {
+    AcdfRowSpot spot = {{0, 0}, 0, {0.0f, 0.0f}, {0.0f, 0.0f}, 0, 1};
+    double at[2];
+    if (!acdf_grid_is_octahedral(grid))
+        spot.nearly = acdf_sphere_nearly(grid->columns, grid->rows, direction, spot.position, spot.error);
+    if (spot.nearly) {
+        spot.square[0] =
+            (uint32_t)spot.position[0] < grid->columns ? (uint32_t)spot.position[0] : grid->columns - 1u;
+        spot.square[1] = (uint32_t)spot.position[1] < grid->rows ? (uint32_t)spot.position[1] : grid->rows - 1u;
+    } else {
+        spot.valid = acdf_grid_square(grid, direction, spot.square, at);
+        if (!spot.valid) return spot;
+    }
+    spot.group = acdf_rows_find_group(rows, spot.square);
+    return spot;
+}
+
+/* The pdf of a cell of a group that holds a grid step of each axis, sr^-1. */
 ACDF_INLINE double acdf_rows_cell(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfGrid* grid,
-                                  const AcdfRowMixture* mix, const uint32_t position[2], AcdfSpan box[2]) {
+                                  const AcdfRowMixture* mix, uint32_t group, const uint32_t position[2],
+                                  AcdfSpan box[2]) {
     double share;
-    const uint32_t tile = acdf_rows_find_tile(rows, mix, position, &share);
+    const uint32_t tile = acdf_rows_find_tile(rows, mix, group, position, &share);
     return acdf_rows_find_inside(tree, grid, acdf_row_tile(rows, tile), share, position, box);
 }
 
 /* The pdf of a direction, sr^-1: exactly that of acdf_rows_sample where that returned it. */
 ACDF_INLINE float acdf_rows_pdf(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfGrid* grid,
-                                const AcdfRowMixture* mix, const float direction[3]) {
-    float position[2], error[2];
-    double at[2];
-    uint32_t square[2];
+                                const AcdfRowMixture* mix, const AcdfRowSpot* spot, const float direction[3]) {
     AcdfSpan box[2];
-    if (!acdf_grid_is_octahedral(grid) &&
-        acdf_sphere_nearly(grid->columns, grid->rows, direction, position, error)) {
-        double p;
-        square[0] = (uint32_t)position[0] < grid->columns ? (uint32_t)position[0] : grid->columns - 1u;
-        square[1] = (uint32_t)position[1] < grid->rows ? (uint32_t)position[1] : grid->rows - 1u;
-        p = acdf_rows_cell(rows, tree, grid, mix, square, box);
-        if (acdf_is_surely_in(position, error, box[0].end[0], box[0].end[1], box[1].end[0], box[1].end[1]))
-            return acdf_float_pdf(p);
-    }
+    uint32_t square[2];
+    double at[2], p;
+    if (!spot->valid) return 0.0f;
+    p = acdf_rows_cell(rows, tree, grid, mix, spot->group, spot->square, box);
+    if (!spot->nearly ||
+        acdf_is_surely_in(spot->position, spot->error, box[0].end[0], box[0].end[1], box[1].end[0], box[1].end[1]))
+        return acdf_float_pdf(p);
     if (!acdf_grid_square(grid, direction, square, at)) return 0.0f;
-    return acdf_float_pdf(acdf_rows_cell(rows, tree, grid, mix, square, box));
+    return acdf_float_pdf(acdf_rows_cell(rows, tree, grid, mix, acdf_rows_find_group(rows, square), square, box));
 }
 
 /* The cell that holds a grid step of each axis, and its probability. */
 ACDF_FN double acdf_rows_find(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfRowMixture* mix,
                               const uint32_t position[2], AcdfSpan box[2]) {
     double share;
-    const AcdfTopTile* tile = acdf_row_tile(rows, acdf_rows_find_tile(rows, mix, position, &share));
+    const AcdfTopTile* tile =
+        acdf_row_tile(rows, acdf_rows_find_tile(rows, mix, acdf_rows_find_group(rows, position), position, &share));
     box[0] = tile->box[0];
     box[1] = tile->box[1];
     if (tile->node == ACDF_LEAF || !(share > 0.0)) return share;
