@@ -53,6 +53,13 @@
 #endif
 #endif
 
+/* What is wanted next, on its way while its position is searched for. */
+#if defined(__GNUC__) && !defined(__CUDACC__)
+#define ACDF_PREFETCH(address) __builtin_prefetch(address)
+#else
+#define ACDF_PREFETCH(address) (void)(address)
+#endif
+
 /* Vectors of two doubles or of four integers, which every x86-64 has. */
 #if defined(__SSE2__) && !defined(__CUDACC__) && !defined(__HIPCC__) && !defined(__SYCL_DEVICE_ONLY__)
 #define ACDF_SSE2 1

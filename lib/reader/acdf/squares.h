@@ -11,12 +11,6 @@
 #include <acdf/elementary.h>
 #include <acdf/layout.h>
 
-/* What is wanted next, on its way while its position is searched for. */
-#if defined(__GNUC__) && !defined(__CUDACC__)
-#define ACDF_PREFETCH(address) __builtin_prefetch(address)
-#else
-#define ACDF_PREFETCH(address) (void)(address)
-#endif
 
 /* Whether several calls are made side by side: not by threads of a GPU, which wait for each other anyhow, and
  * whose registers would not hold them. */

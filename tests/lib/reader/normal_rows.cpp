@@ -17,9 +17,9 @@ using namespace acdf_test;
 
 namespace {
 
-class Opened {
+class OpenedNormals {
 public:
-    explicit Opened(const NormalsSpec& spec, bool tables = true) : bytes_(spec.encode()) {
+    explicit OpenedNormals(const NormalsSpec& spec, bool tables = true) : bytes_(spec.encode()) {
         acdf::LoadOptions options;
         options.tables = tables;
         const acdf::Status status = acdf::File::from_memory(bytes_.data(), bytes_.size(), file_, options);
@@ -37,9 +37,9 @@ private:
     acdf::File file_;
 };
 
-using Vector = std::array<float, 3>;
+using AnyVector = std::array<float, 3>;
 
-Vector random_direction(std::mt19937_64& random) {
+AnyVector any_direction(std::mt19937_64& random) {
     std::normal_distribution<double> normal;
     const double v[3] = {normal(random), normal(random), normal(random)};
     const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -52,7 +52,7 @@ struct Mixture {
     double sum = 0.0; ///< 0: no light
     std::vector<RowCell> cells;
 
-    Mixture(const NormalsSpec& spec, const Vector& normal) {
+    Mixture(const NormalsSpec& spec, const AnyVector& normal) {
         AcdfNormalBins bins;
         EXPECT_TRUE(acdf_octahedral_bins(spec.subdivisions, normal.data(), &bins));
         for (int i = 0; i < bins.count; ++i) {
@@ -86,11 +86,11 @@ TEST(NormalRows, pdfIsThatOfTheMixture) {
     for (std::uint32_t seed = 0; seed < 40; ++seed) {
         std::mt19937_64 random(seed);
         const NormalsSpec spec = random_normals(seed);
-        const Opened opened(spec, seed % 2 == 0);
+        const OpenedNormals opened(spec, seed % 2 == 0);
         const acdf::LocalEnvironmentView view = opened.view();
         const AcdfGrid grid = opened.grid();
         for (int n = 0; n < 40; ++n) {
-            const Vector normal = random_direction(random), direction = random_direction(random);
+            const AnyVector normal = any_direction(random), direction = any_direction(random);
             const Mixture mixture(spec, normal);
             std::uint32_t square[2];
             double position[2], expected = double{view.environment().pdf(direction.data())};
@@ -112,10 +112,10 @@ TEST(NormalRows, pdfIsThatOfTheSample) {
     for (std::uint32_t seed = 0; seed < 40; ++seed) {
         std::mt19937_64 random(seed);
         std::uniform_real_distribution<double> unit(0.0, 1.0);
-        const Opened opened(random_normals(seed), seed % 2 == 1);
+        const OpenedNormals opened(random_normals(seed), seed % 2 == 1);
         const acdf::LocalEnvironmentView view = opened.view();
         for (int n = 0; n < 500; ++n) {
-            const Vector normal = random_direction(random);
+            const AnyVector normal = any_direction(random);
             double u[2] = {unit(random), unit(random)};
             if (n < 9) u[0] = 0.5 * (n % 3), u[1] = 0.5 * (n / 3);
             const acdf::DirectionSample s = view.sample(normal.data(), u[0], u[1]);
@@ -130,12 +130,12 @@ TEST(NormalRows, pdfIsThatOfTheSample) {
 
 /// Over rectangles of grid squares.
 TEST(NormalRows, samplesFollowThePdf) {
-    const Vector normal = {0.4f, -0.6f, 0.7f};
+    const AnyVector normal = {0.4f, -0.6f, 0.7f};
     for (std::uint32_t seed = 1; seed < 9; ++seed) {
         NormalsSpec spec = random_normals(seed);
         spec.cosine_share = 0.0f;
         for (BinSpec& bin : spec.bins) bin.root = bin.root == no_root ? 0 : bin.root, bin.share += 0.1f;
-        const Opened opened(spec);
+        const OpenedNormals opened(spec);
         const AcdfGrid grid = opened.grid();
         const std::uint32_t step[2] = {1 + grid.columns / 24, 1 + grid.rows / 24};
         const std::uint32_t across = (grid.columns - 1) / step[0] + 1, down = (grid.rows - 1) / step[1] + 1;
@@ -166,7 +166,7 @@ TEST(NormalRows, samplesFollowThePdf) {
 
 TEST(NormalRows, irradianceIsTheLightOfTheBins) {
     const NormalsSpec spec = small_normals();
-    const Opened opened(spec);
+    const OpenedNormals opened(spec);
     const float up[3] = {0.0f, 0.0f, 2.0f}, down[3] = {0.0f, 0.0f, -1.0f};
     EXPECT_NEAR(opened.view().irradiance(up), spec.tree.total * double{spec.bins[0].share}, 1e-12);
     EXPECT_NEAR(opened.view().irradiance(down), spec.tree.total * double{spec.bins[5].share}, 1e-12);
@@ -176,7 +176,7 @@ TEST(NormalRows, irradianceIsTheLightOfTheBins) {
 }
 
 TEST(NormalRows, viewsMove) {
-    const Opened opened(random_normals(3));
+    const OpenedNormals opened(random_normals(3));
     AcdfFile* file = acdf_from_memory(opened.bytes().data(), opened.bytes().size(), nullptr);
     ASSERT_NE(file, nullptr);
     AcdfLocal local;
@@ -195,7 +195,7 @@ TEST(NormalRows, viewsMove) {
     acdf_close(file);
     std::mt19937_64 random(1);
     for (int n = 0; n < 100; ++n) {
-        const Vector normal = random_direction(random);
+        const AnyVector normal = any_direction(random);
         const AcdfDirectionSample s = acdf_local_sample(&local, normal.data(), 0.01 * n, std::fmod(0.37 * n, 1.0));
         const acdf::DirectionSample t = opened.view().sample(normal.data(), 0.01 * n, std::fmod(0.37 * n, 1.0));
         EXPECT_EQ(std::memcmp(&s.pdf, &t.pdf, sizeof s.pdf), 0);
