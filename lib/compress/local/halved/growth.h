@@ -1,0 +1,75 @@
+// Where the tree of a local environment map divides: its top by what normals together pay for it, what is below by
+// the light alone, as much as that is worth to them.
+#pragma once
+
+#include "compress/halvings/growth.h"
+#include "compress/halvings/sums.h"
+#include "compress/local/halved/moments.h"
+#include "compress/local/normals.h"
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace acdf::compress {
+
+/// Normals that stand for all, and what their relative noise counts.
+struct SomeNormals {
+    Normals normals;
+    std::vector<double> weights;
+};
+
+/// At most 66: those of bins that are stored, or of coarser ones around them.
+SomeNormals few_normals(const NormalBins& bins);
+
+/// The cost of a node as a tile, where each normal has the share of it that suits it: relative to what the normal's
+/// light costs at least, the mean over normals. With h = g, that is the root of the integral of g times that of
+/// g cos^2 above the horizon.
+class TopCosts final : public HalvedCosts {
+public:
+    /// `weights` of normals become such that the least of all costs is 1.
+    TopCosts(const Blocks& blocks, const Moments& light, SomeNormals normals);
+
+    float cost(HalvedBox box) const override;
+    double least_square() const override { return 1.0; }
+    const SomeNormals& normals() const { return normals_; }
+
+private:
+    double root_sum(HalvedBox box) const;
+
+    const Blocks& blocks_;
+    const Moments& light_;
+    SomeNormals normals_;
+    mutable std::vector<std::atomic<float>> known_; ///< of each box; below 0: not yet
+};
+
+/// What light of a direction is worth: the mean over normals of its cosine over what the normal's light costs. Some
+/// even where no normal sees it, for points without a normal.
+std::vector<float> worth_of_blocks(const Blocks& blocks, const SomeNormals& normals);
+
+/// Light times its worth, and its squares.
+class SharedLight {
+public:
+    /// `unit`: what light is multiplied with.
+    SharedLight(const Blocks& blocks, std::vector<float> worth, double unit);
+
+    const HalvedSums& costs() const { return *costs_; }
+    float worth(HalvedBox box) const { return worth_[blocks_.index(blocks_.block_of(box))]; }
+    /// Root of a box's measure times the integral of the square of light.
+    double alone(HalvedBox box) const { return costs_->alone(box) / (double{worth(box)} * cost_unit()); }
+    /// What costs are multiplied with, beside those of the top.
+    double cost_unit() const { return costs_->unit() / unit_; }
+
+private:
+    const Blocks& blocks_;
+    std::vector<float> worth_; ///< of blocks
+    double unit_;
+    std::vector<float> values_;
+    std::unique_ptr<HalvedSums> costs_;
+};
+
+/// The first `halvings` of them, which are the top, as a tree of their own.
+std::vector<HalvedNode> first_halvings(const std::vector<HalvedNode>& nodes, std::size_t halvings);
+
+} // namespace acdf::compress
