@@ -52,7 +52,7 @@ std::size_t above(const std::vector<double>& falling, double least) {
 
 } // namespace
 
-double mixing_variance(const Blocks& blocks, const Moments& light, const std::vector<HalvedNode>& top,
+double mixing_variance(const Blocks& blocks, const BlockMoments& light, const std::vector<HalvedNode>& top,
                        const NormalBins& bins) {
     std::vector<HalvedBox> tiles;
     for (const HalvedNode& node : first_halvings(top, std::min(kMixingHalvings, top.size() / 2)))

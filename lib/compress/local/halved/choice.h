@@ -20,7 +20,7 @@ struct RowSize {
 };
 
 /// The relative variance that mixing rows of bins adds, where the octahedron has 8 subdivisions.
-double mixing_variance(const Blocks& blocks, const Moments& light, const std::vector<HalvedNode>& top,
+double mixing_variance(const Blocks& blocks, const BlockMoments& light, const std::vector<HalvedNode>& top,
                        const NormalBins& bins);
 
 /// The size that leaves the least noise in `bytes`: bins that are further apart mix worse, bins that are closer

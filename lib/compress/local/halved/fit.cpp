@@ -119,8 +119,8 @@ std::size_t LocalHalvingsFitter::codes_of(const std::vector<HalvedNode>& top, co
 }
 
 /// h of a cell: the square of its light, times its measure over its share of a tile's samples.
-Moments LocalHalvingsFitter::light_of_tiles(const RowTree& tree, const std::vector<HalvedNode>& nodes) const {
-    Moments out(blocks_);
+BlockMoments LocalHalvingsFitter::light_of_tiles(const RowTree& tree, const std::vector<HalvedNode>& nodes) const {
+    BlockMoments out(blocks_);
     const HalvedAxes& axes = shared_->costs().axes();
     const std::uint32_t rows = blocks_.rows(), columns = blocks_.columns();
     const auto add = [&](HalvedBox box, double share) {
@@ -132,7 +132,7 @@ Moments LocalHalvingsFitter::light_of_tiles(const RowTree& tree, const std::vect
             const double factor = axes.measure(box) / share;
             for (std::uint32_t i = r[0]; i < r[1]; ++i)
                 for (std::uint32_t k = c[0]; k < c[1]; ++k) {
-                    Moment& to = out[{i, k}];
+                    BlockMoment& to = out[{i, k}];
                     to = squares_[{i, k}];
                     for (float& q : to.quad) q = static_cast<float>(double{q} * factor);
                     to.sum = static_cast<float>(double{to.sum} * factor);
@@ -156,7 +156,7 @@ Moments LocalHalvingsFitter::light_of_tiles(const RowTree& tree, const std::vect
                 const Direction d =
                     direction_at(target_, 0.5 * (axes.rows.low(part.rows) + axes.rows.high(part.rows)),
                                  0.5 * (axes.columns.low(part.columns) + axes.columns.high(part.columns)));
-                Moment& to = out[{cut(i, rows), cut(k, columns)}];
+                BlockMoment& to = out[{cut(i, rows), cut(k, columns)}];
                 to = to + moment_of(d, light);
             }
     };
@@ -195,7 +195,7 @@ LocalHalvings LocalHalvingsFitter::fit(const NormalBins& bins, const LocalHalvin
     const RowTree tree(nodes, halvings, weights, {target_.row_axis, target_.column_axis});
     std::vector<HalvedBox> tiles;
     for (const RowTree::Tile& tile : tree.tiles()) tiles.push_back(nodes[tile.node].box);
-    const Moments light = light_of_tiles(tree, nodes);
+    const BlockMoments light = light_of_tiles(tree, nodes);
     report(0.6);
     const MixedRows rows(light, tiles, bins);
     RowParts parts = rows.parts();

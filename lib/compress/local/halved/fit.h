@@ -59,12 +59,12 @@ public:
 private:
     const HalvedGrowth& grown_top(std::size_t halvings);
     std::size_t codes_of(const std::vector<HalvedNode>& top, const NormalBins& bins) const;
-    Moments light_of_tiles(const RowTree& tree, const std::vector<HalvedNode>& nodes) const;
+    BlockMoments light_of_tiles(const RowTree& tree, const std::vector<HalvedNode>& nodes) const;
 
     const Target& target_;
     const double unit_; ///< one over the mean of the target
     const Blocks blocks_;
-    Moments light_, squares_; ///< of g, and of its square
+    BlockMoments light_, squares_; ///< of g, and of its square
     std::optional<TopCosts> costs_;
     std::optional<SharedLight> shared_;
     std::optional<HalvedGrowth> top_;

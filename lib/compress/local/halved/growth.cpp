@@ -38,7 +38,7 @@ SomeNormals few_normals(const NormalBins& bins) {
     return out;
 }
 
-TopCosts::TopCosts(const Blocks& blocks, const Moments& light, SomeNormals normals)
+TopCosts::TopCosts(const Blocks& blocks, const BlockMoments& light, SomeNormals normals)
     : HalvedCosts(blocks.axes()), blocks_(blocks), light_(light), normals_(std::move(normals)),
       known_(blocks.size()) {
     for (std::atomic<float>& known : known_) known.store(-1.0f, std::memory_order_relaxed);
@@ -105,7 +105,7 @@ namespace {
 /// The block that the middle of each texel of an axis lies in.
 std::vector<std::uint32_t> blocks_of_texels(const std::vector<double>& borders) {
     std::vector<std::uint32_t> out;
-    for (std::uint32_t block = 0; out.size() < borders.back();) {
+    for (std::uint32_t block = 0; double(out.size()) < borders.back();) {
         if (borders[block + 1] > double(out.size()) + 0.5) out.push_back(block);
         else ++block;
     }

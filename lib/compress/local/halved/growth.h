@@ -29,7 +29,7 @@ SomeNormals few_normals(const NormalBins& bins);
 class TopCosts final : public HalvedCosts {
 public:
     /// `weights` of normals become such that the least of all costs is 1.
-    TopCosts(const Blocks& blocks, const Moments& light, SomeNormals normals);
+    TopCosts(const Blocks& blocks, const BlockMoments& light, SomeNormals normals);
 
     float cost(HalvedBox box) const override;
     double least_square() const override { return 1.0; }
@@ -39,7 +39,7 @@ private:
     double root_sum(HalvedBox box) const;
 
     const Blocks& blocks_;
-    const Moments& light_;
+    const BlockMoments& light_;
     SomeNormals normals_;
     mutable std::vector<std::atomic<float>> known_; ///< of each box; below 0: not yet
 };

@@ -8,7 +8,7 @@
 namespace acdf::compress {
 namespace {
 
-constexpr double kCornerShare = 0.2; // of what normals count, bins themselves
+constexpr double kAloneShare = 0.2; // of what normals count, bins themselves
 
 using Corner = std::array<std::int32_t, 3>;
 
@@ -54,7 +54,7 @@ Mixtures::Mixtures(const NormalBins& bins) : near(bins.normals.size()) {
             mixture.frequency = std::min(mixture.frequency, bins.weight[mixture.bin[i]]);
             for (std::size_t k = 0; k < 3; ++k) place[k] += corner[k] / 3.0;
         }
-        mixture.frequency *= 0.5 * (1.0 - kCornerShare); // there are two triangles a bin
+        mixture.frequency *= 0.5 * (1.0 - kAloneShare); // there are two triangles a bin
         const double length = length_of(place);
         mixture.length = static_cast<float>(length);
         add(mixture, {place[0] / length, place[1] / length, place[2] / length});
@@ -63,7 +63,7 @@ Mixtures::Mixtures(const NormalBins& bins) : near(bins.normals.size()) {
         Mixture alone;
         alone.bin = {b, b, b};
         alone.weight = {1.0f, 0.0f, 0.0f};
-        alone.frequency = kCornerShare * bins.weight[b];
+        alone.frequency = kAloneShare * bins.weight[b];
         add(alone, bins.normals[b]);
     }
 }

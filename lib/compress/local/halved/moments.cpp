@@ -37,7 +37,7 @@ double height_at(double row, std::uint32_t rows) {
     return cosine;
 }
 
-void add_to(Moment& out, double x, double y, double z, double light) {
+void add_to(BlockMoment& out, double x, double y, double z, double light) {
     const double quad[6] = {x * x, y * y, z * z, 2.0 * x * y, 2.0 * x * z, 2.0 * y * z};
     for (std::size_t k = 0; k < 6; ++k) out.quad[k] += static_cast<float>(light * quad[k]);
     out.sum += static_cast<float>(light);
@@ -69,7 +69,7 @@ Azimuths azimuths(const std::vector<std::vector<Piece>>& columns, std::uint32_t 
     return out;
 }
 
-void add_row(const Azimuths& of, const float* light, double z, double measure, Moment* blocks) {
+void add_row(const Azimuths& of, const float* light, double z, double measure, BlockMoment* blocks) {
     const double radius = std::sqrt((1.0 - z) * (1.0 + z));
     const auto m = static_cast<float>(measure), rr = static_cast<float>(measure * radius * radius),
                rz = static_cast<float>(2.0 * measure * radius * z), zz = static_cast<float>(measure * z * z);
@@ -84,7 +84,7 @@ void add_row(const Azimuths& of, const float* light, double z, double measure, M
             s += l * of.s[i];
             sum += l * of.measure[i];
         }
-        Moment& out = blocks[b];
+        BlockMoment& out = blocks[b];
         out.quad[0] += rr * cc;
         out.quad[1] += rr * ss;
         out.quad[2] += zz * sum;
@@ -96,8 +96,8 @@ void add_row(const Azimuths& of, const float* light, double z, double measure, M
 }
 
 /// Of each normal: h cos^2 where it sees all of a box, 0 where it sees nothing, else -1.
-ACDF_WIDTHS void look(const Moment& moment, const BoxCone& cone, const float* x, const float* y, const float* z,
-                      std::size_t count, float* out) {
+ACDF_WIDTHS void look(const BlockMoment& moment, const BoxCone& cone, const float* x, const float* y,
+                      const float* z, std::size_t count, float* out) {
     const float *q = moment.quad, *a = cone.axis, s = cone.sine;
     const float q0 = q[0], q1 = q[1], q2 = q[2], q3 = q[3], q4 = q[4], q5 = q[5], a0 = a[0], a1 = a[1], a2 = a[2];
     for (std::size_t i = 0; i < count; ++i) {
@@ -110,13 +110,13 @@ ACDF_WIDTHS void look(const Moment& moment, const BoxCone& cone, const float* x,
 
 } // namespace
 
-Moment moment_of(const Direction& direction, double light) {
-    Moment out;
+BlockMoment moment_of(const Direction& direction, double light) {
+    BlockMoment out;
     add_to(out, direction[0], direction[1], direction[2], light);
     return out;
 }
 
-void Moments::integrate(const Row& row) {
+void BlockMoments::integrate(const Row& row) {
     const Target& grid = blocks_.grid();
     const bool octahedral = is_octahedral(grid);
     const auto part = [](const std::vector<double>& measure) {
@@ -132,8 +132,8 @@ void Moments::integrate(const Row& row) {
     parallel_parts(0, rows.size(), 1, [&](std::size_t first, std::size_t last) {
         std::vector<float> scratch(grid.columns);
         for (std::size_t r = first; r < last; ++r) {
-            Moment* blocks = &(*this)[{static_cast<std::uint32_t>(blocks_.rows() + r), blocks_.columns()}];
-            std::fill_n(blocks, blocks_.columns(), Moment{});
+            BlockMoment* blocks = &(*this)[{static_cast<std::uint32_t>(blocks_.rows() + r), blocks_.columns()}];
+            std::fill_n(blocks, blocks_.columns(), BlockMoment{});
             for (const Piece& p : rows[r]) {
                 const float* light = row(p.texel, scratch.data());
                 if (!octahedral) {
@@ -152,7 +152,7 @@ void Moments::integrate(const Row& row) {
     add_up();
 }
 
-void Moments::add_up() {
+void BlockMoments::add_up() {
     const std::uint32_t rows = blocks_.rows(), columns = blocks_.columns();
     for (std::uint32_t r = 2 * rows; r-- > 1;)
         for (std::uint32_t c = 2 * columns; c-- > 1;) {
@@ -164,8 +164,8 @@ void Moments::add_up() {
 }
 
 /// Of a block at the horizon: as if its light were even between the heights that it reaches to.
-float Moments::seen(HalvedBox box, const float n[3]) const {
-    const Moment& moment = (*this)[box];
+float BlockMoments::seen(HalvedBox box, const float n[3]) const {
+    const BlockMoment& moment = (*this)[box];
     if (!(moment.sum > 0.0f)) return 0.0f;
     const BoxCone& cone = blocks_.cone(box);
     const float d = cone.axis[0] * n[0] + cone.axis[1] * n[1] + cone.axis[2] * n[2], s = cone.sine;
@@ -183,8 +183,8 @@ float Moments::seen(HalvedBox box, const float n[3]) const {
     return seen(half(box, axis, 0), n) + seen(half(box, axis, 1), n);
 }
 
-void Moments::seen(HalvedBox box, const Normals& normals, float* out) const {
-    const Moment& moment = (*this)[box];
+void BlockMoments::seen(HalvedBox box, const Normals& normals, float* out) const {
+    const BlockMoment& moment = (*this)[box];
     if (!(moment.sum > 0.0f)) return std::fill_n(out, normals.size(), 0.0f), void();
     look(moment, blocks_.cone(box), normals.x.data(), normals.y.data(), normals.z.data(), normals.size(), out);
     for (std::size_t i = 0; i < normals.size(); ++i) {

@@ -11,21 +11,21 @@
 namespace acdf::compress {
 
 /// Integrals of light h over a box: of h d d^T, so that those of h cos^2 are known for all normals, and of h.
-struct Moment {
+struct BlockMoment {
     float quad[6] = {}; ///< xx, yy, zz, 2 xy, 2 xz, 2 yz
     float sum = 0.0f;
     float unused = 0.0f;
 };
 
-inline Moment operator+(const Moment& a, const Moment& b) {
-    Moment out;
+inline BlockMoment operator+(const BlockMoment& a, const BlockMoment& b) {
+    BlockMoment out;
     for (std::size_t k = 0; k < 6; ++k) out.quad[k] = a.quad[k] + b.quad[k];
     out.sum = a.sum + b.sum;
     return out;
 }
 
 /// Of light of so much from about one direction.
-Moment moment_of(const Direction& direction, double light);
+BlockMoment moment_of(const Direction& direction, double light);
 
 /// Directions in arrays, for loops that are vectors.
 struct Normals {
@@ -40,18 +40,18 @@ struct Normals {
 };
 
 /// Of all boxes of blocks.
-class Moments {
+class BlockMoments {
 public:
     /// `blocks` must outlive it.
-    explicit Moments(const Blocks& blocks) : blocks_(blocks), of_(blocks.size()) {}
+    explicit BlockMoments(const Blocks& blocks) : blocks_(blocks), of_(blocks.size()) {}
 
     /// A row of texels of h, from this number on: where it stands, or in `scratch`, which has room for it.
     using Row = std::function<const float*(std::uint32_t row, float* scratch)>;
     /// Adds all texels, and sums up boxes of blocks.
     void integrate(const Row& row);
 
-    Moment& operator[](HalvedBox box) { return of_[blocks_.index(box)]; }
-    const Moment& operator[](HalvedBox box) const { return of_[blocks_.index(box)]; }
+    BlockMoment& operator[](HalvedBox box) { return of_[blocks_.index(box)]; }
+    const BlockMoment& operator[](HalvedBox box) const { return of_[blocks_.index(box)]; }
     /// Sums up boxes of blocks.
     void add_up();
 
@@ -63,7 +63,7 @@ private:
     float seen(HalvedBox box, const float n[3]) const;
 
     const Blocks& blocks_;
-    std::vector<Moment> of_;
+    std::vector<BlockMoment> of_;
 };
 
 } // namespace acdf::compress

@@ -13,7 +13,7 @@ namespace {
 constexpr int kSteps = 2; // towards the minimum: most of what is gained comes with the first
 /// Of a bin's own best part, what stays at least, and the cosine below which all stays, times the subdivisions:
 /// both bound weights.
-constexpr float kLeastPart = 0.25f, kLeastCosine = 0.06f;
+constexpr float kKeptPart = 0.25f, kKeptCosine = 0.06f;
 constexpr std::size_t kTogether = 16; // tiles whose costs are written at once
 constexpr float kLeast = std::numeric_limits<float>::min();
 
@@ -61,11 +61,11 @@ ACDF_WIDTHS MixtureSums add_up(const float* cost, const float* mixed, std::size_
 }
 
 /// What is positive stays so.
-float as_part(float value) { return value > 0.0f ? std::max(value, kLeast) : 0.0f; }
+float kept_positive(float value) { return value > 0.0f ? std::max(value, kLeast) : 0.0f; }
 
 } // namespace
 
-MixedRows::MixedRows(const Moments& light, const std::vector<HalvedBox>& tiles, const NormalBins& bins)
+MixedRows::MixedRows(const BlockMoments& light, const std::vector<HalvedBox>& tiles, const NormalBins& bins)
     : tiles_(tiles), bins_(bins), mixtures_(bins), costs_(mixtures_.of.size() * tiles.size()), whole_(tiles.size()),
       own_(bins.normals.size()) {
     Normals stored;
@@ -86,7 +86,7 @@ MixedRows::MixedRows(const Moments& light, const std::vector<HalvedBox>& tiles, 
                 whole_[begin + k] = std::sqrt(light[box].sum);
                 light.seen(box, stored, seen.data());
                 for (std::size_t i = 0; i < bin_of.size(); ++i)
-                    own_[bin_of[i]][begin + k] = as_part(std::sqrt(seen[i]));
+                    own_[bin_of[i]][begin + k] = kept_positive(std::sqrt(seen[i]));
                 light.seen(box, mixtures_.normals, seen.data());
                 for (std::size_t j = 0; j < mixtures_.of.size(); ++j)
                     of_tiles[j * kTogether + k] = mixtures_.of[j].length * std::sqrt(seen[j]);
@@ -138,10 +138,10 @@ void MixedRows::step(std::size_t bin, const RowParts& rows, const std::vector<Sc
     }
     if (!(after > 0.0)) return out = rows[bin], void();
     const auto scale = static_cast<float>(before / after);
-    const float least_cosine = kLeastCosine / static_cast<float>(bins_.subdivisions);
+    const float least_cosine = kKeptCosine / static_cast<float>(bins_.subdivisions);
     for (std::size_t t = 0; t < out.size(); ++t) {
-        const float least = std::max(kLeastPart * own[t], std::min(own[t], least_cosine * whole_[t]));
-        out[t] = own[t] > 0.0f ? as_part(std::max(out[t] * scale, least)) : 0.0f;
+        const float least = std::max(kKeptPart * own[t], std::min(own[t], least_cosine * whole_[t]));
+        out[t] = own[t] > 0.0f ? kept_positive(std::max(out[t] * scale, least)) : 0.0f;
     }
 }
 

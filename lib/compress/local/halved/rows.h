@@ -17,8 +17,8 @@ using RowParts = std::vector<std::vector<float>>;
 /// positive sums; the square root of their ratio leads towards the minimum (as in Lee and Seung's factorizations).
 class MixedRows {
 public:
-    /// Moments, tiles and bins must outlive it.
-    MixedRows(const Moments& light, const std::vector<HalvedBox>& tiles, const NormalBins& bins);
+    /// BlockMoments, tiles and bins must outlive it.
+    MixedRows(const BlockMoments& light, const std::vector<HalvedBox>& tiles, const NormalBins& bins);
 
     /// A part is positive wherever the bin sees light of the tile; their sum is what the bin's light costs.
     RowParts parts() const;
