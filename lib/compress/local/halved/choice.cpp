@@ -97,13 +97,14 @@ double mixing_variance(const Blocks& blocks, const BlockMoments& light, const st
     return weight > 0.0 ? out / weight : 0.0;
 }
 
-RowSize choose_rows(const HalvedGrowth& top, double mixing, double bytes, std::uint32_t fixed) {
+RowSize choose_rows(const HalvedGrowth& top, double mixing, double bytes, double of_bin, std::uint32_t fixed) {
     RowSize best;
     double least = std::numeric_limits<double>::infinity();
     for (std::uint32_t n = fixed ? fixed : kLeastSubdivisions; n <= (fixed ? fixed : kMostSubdivisions); ++n)
         for (const std::uint32_t bits : {6u, 7u, 8u}) {
+            const double left = std::max(0.0, bytes - of_bin * rows_of(n));
             const auto halvings = std::min(
-                static_cast<std::size_t>(halvings_for(kUsualTop * bytes, rows_of(n), bits)), top.leaves() - 1);
+                static_cast<std::size_t>(halvings_for(kUsualTop * left, rows_of(n), bits)), top.leaves() - 1);
             const double last = double((1u << bits) - 1), depth = std::log2(double(halvings) + 1.0);
             // A code is off by its share of an angle of a quarter turn, evenly; shallow halvings are hardly.
             const double rounding = ACDF_PI * ACDF_PI / 12.0 / (last * last) * 0.66 * depth;

@@ -25,7 +25,7 @@ double mixing_variance(const Blocks& blocks, const BlockMoments& light, const st
 
 /// The size that leaves the least noise in `bytes`: bins that are further apart mix worse, bins that are closer
 /// leave bytes for fewer tiles. `fixed`: if not 0, the subdivisions.
-RowSize choose_rows(const HalvedGrowth& top, double mixing, double bytes, std::uint32_t fixed);
+RowSize choose_rows(const HalvedGrowth& top, double mixing, double bytes, double of_bin, std::uint32_t fixed);
 
 /// How many halvings have codes of `rows`, so that a bit gains alike there and below.
 std::size_t choose_top(const HalvedGrowth& top, const SharedLight& light, std::size_t rows, std::uint32_t code_bits,

@@ -84,11 +84,11 @@ const HalvedGrowth& LocalHalvingsFitter::grown_top(std::size_t halvings) {
     return *top_;
 }
 
-RowSize LocalHalvingsFitter::rows_for(double bytes, std::uint32_t fixed) {
+RowSize LocalHalvingsFitter::rows_for(double bytes, double of_bin, std::uint32_t fixed) {
     const double rows = fixed ? 4.0 * fixed * fixed + 2.0 : kFewestRows * std::pow(bytes / kFewestAt, kFewestFalls);
     const HalvedGrowth& top = grown_top(static_cast<std::size_t>(bytes * 8.0 / (rows * 6.0 * 0.5)) + 1);
     if (!mixing_) mixing_ = mixing_variance(blocks_, light_, top.nodes(), octahedral_bins(8));
-    return choose_rows(top, *mixing_, bytes, fixed);
+    return choose_rows(top, *mixing_, bytes, of_bin, fixed);
 }
 
 std::size_t LocalHalvingsFitter::top_for(double bytes, std::size_t rows, std::uint32_t code_bits) {
@@ -173,7 +173,7 @@ LocalHalvings LocalHalvingsFitter::fit(const NormalBins& bins, const LocalHalvin
         if (progress) progress(share);
     };
     const HalvedGrowth& grown = grown_top(size.top);
-    std::size_t halvings = std::min(size.top, grown.leaves() - 1), codes = 0, all = 0;
+    std::size_t halvings = std::min({size.top, size.halvings, grown.leaves() - 1}), codes = 0, all = 0;
     std::vector<HalvedNode> top;
     for (;; halvings = halvings * 3 / 4) {
         top = first_halvings(grown.nodes(), halvings);
@@ -182,7 +182,7 @@ LocalHalvings LocalHalvingsFitter::fit(const NormalBins& bins, const LocalHalvin
         if (halvings == 0) throw std::runtime_error("no tree fits into the budget");
     }
     report(0.2);
-    all = halvings_within(size.bytes, codes, size.code_bits);
+    all = std::min(halvings_within(size.bytes, codes, size.code_bits), size.halvings);
     HalvedGrowth growth({{0, all + 1}}, {kAlike});
     growth.run_below(std::move(top), shared_->costs(), Loop(false),
                      [&](double share) { report(0.2 + 0.3 * share); });

@@ -13,7 +13,7 @@
 #include <acdf/layout.h>
 
 #include <cstdint>
-#include <memory>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -38,8 +38,9 @@ Chunk normals_chunk(const LocalHalvings& fit);
 /// How large the parts of a fit become.
 struct LocalHalvingsSize {
     std::uint32_t code_bits = 7;
-    std::size_t top = 0;     ///< halvings with codes of rows, at most
-    std::uint64_t bytes = 0; ///< of HALV and NORM together, at most
+    std::size_t top = 0;                                            ///< halvings with codes of rows, at most
+    std::size_t halvings = std::numeric_limits<std::size_t>::max(); ///< of all, at most
+    std::uint64_t bytes = 0;                                        ///< of HALV and NORM together, at most
 };
 
 /// Fits of one probe, of any size. Deterministic for any number of threads.
@@ -49,8 +50,9 @@ public:
     /// std::invalid_argument where the target has no energy.
     LocalHalvingsFitter(const Target& target, const NormalBins& normals);
 
-    /// Subdivisions and code bits for chunks HALV and NORM of `bytes`; `fixed`: if not 0, the subdivisions.
-    RowSize rows_for(double bytes, std::uint32_t fixed);
+    /// Subdivisions and code bits for `bytes` of chunks HALV and NORM, and `of_bin` beside them for each bin;
+    /// `fixed`: if not 0, the subdivisions.
+    RowSize rows_for(double bytes, double of_bin, std::uint32_t fixed);
     /// Halvings with codes of so many rows.
     std::size_t top_for(double bytes, std::size_t rows, std::uint32_t code_bits);
     /// Throws std::runtime_error where no tree fits.
