@@ -150,6 +150,10 @@ void LocalConversion::check() {
     if (local_.shape == builder::LocalShape::fast)
         for (const char* option : {"--no-sharing", "--visibility", "--max-weight", "--mis"})
             if (given(option)) throw CLI::ValidationError("--shape", std::string("fast goes without ") + option);
+    if (local_.shape == builder::LocalShape::halvings)
+        for (const char* option : {"--no-sharing", "--visibility", "--max-weight"})
+            if (given(option))
+                throw CLI::ValidationError("--shape", std::string("halvings goes without ") + option);
     if (!visibility_) return;
     if (!scene_.given()) throw CLI::ValidationError("--visibility", "needs --scene MESH");
     for (const char* option : {"--no-sharing", "--cells", "--target-variance", "--max-weight"})

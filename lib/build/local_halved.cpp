@@ -21,7 +21,8 @@ constexpr double kBytesOfCell = 3.0;    // of a file, about
 class HalvedLocals {
 public:
     HalvedLocals(const compress::Target& target, const Source& source, const LocalOptions& options)
-        : target_(target), source_(source), options_(options), fitter_(target, bins_of(options, kCountedAt)) {}
+        : target_(target), source_(source), options_(options),
+          fitter_(target, bins_of(options, kCountedAt), options.mis) {}
 
     Local of_budget(std::uint64_t budget, const Progress& progress) {
         const auto build = [&](std::uint64_t bytes) { return of_bytes(bytes, progress); };
@@ -70,7 +71,7 @@ private:
     compress::LocalHalvingsSize size_for(const NormalBins& bins, double bytes) {
         compress::LocalHalvingsSize size;
         size.code_bits = code_bits_;
-        size.top = options_.tiles > 0 ? options_.tiles - 1 : fitter_.top_for(bytes, bins.stored(), code_bits_);
+        size.top = options_.tiles > 0 ? options_.tiles - 1 : fitter_.top_for(bytes, bins, code_bits_);
         return size;
     }
 

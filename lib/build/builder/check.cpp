@@ -119,7 +119,8 @@ void check_bins(const LocalOptions& options) {
 
 bool may_be_halvings(const LocalOptions& options) {
     return options.sharing && options.max_weight == 0.0 && !options.visibility.point &&
-           options.mis.kind == ACDF_PARTNER_NONE;
+           (options.mis.kind == ACDF_PARTNER_NONE ||
+            (options.mis.kind == ACDF_PARTNER_COSINE && options.mis.heuristic == ACDF_HEURISTIC_BALANCE));
 }
 
 bool may_be_fast(const LocalOptions& options) {

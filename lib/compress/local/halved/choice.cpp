@@ -24,9 +24,7 @@ constexpr std::size_t kSmoothed = 50; // halvings at the top over which gains ar
 
 double rows_of(std::uint32_t subdivisions) { return 4.0 * subdivisions * subdivisions + 2.0; }
 
-double halvings_for(double bytes, double rows, std::uint32_t code_bits) {
-    return bytes * 8.0 / (rows * code_bits * kSeen + kSharedBits - 8.0);
-}
+double halvings_for(double bytes, double row_bits) { return bytes * 8.0 / (row_bits + kSharedBits - 8.0); }
 
 /// What halvings gain in the order in which they are made, as it falls.
 std::vector<double> falling_gains(const HalvedGrowth& growth, std::size_t roots, std::size_t smoothed) {
@@ -103,8 +101,9 @@ RowSize choose_rows(const HalvedGrowth& top, double mixing, double bytes, double
     for (std::uint32_t n = fixed ? fixed : kLeastSubdivisions; n <= (fixed ? fixed : kMostSubdivisions); ++n)
         for (const std::uint32_t bits : {6u, 7u, 8u}) {
             const double left = std::max(0.0, bytes - of_bin * rows_of(n));
-            const auto halvings = std::min(
-                static_cast<std::size_t>(halvings_for(kUsualTop * left, rows_of(n), bits)), top.leaves() - 1);
+            const auto halvings =
+                std::min(static_cast<std::size_t>(halvings_for(kUsualTop * left, rows_of(n) * bits * kSeen)),
+                         top.leaves() - 1);
             const double last = double((1u << bits) - 1), depth = std::log2(double(halvings) + 1.0);
             // A code is off by its share of an angle of a quarter turn, evenly; shallow halvings are hardly.
             const double rounding = ACDF_PI * ACDF_PI / 12.0 / (last * last) * 0.66 * depth;
@@ -117,31 +116,32 @@ RowSize choose_rows(const HalvedGrowth& top, double mixing, double bytes, double
     return best;
 }
 
-std::size_t choose_top(const HalvedGrowth& top, const SharedLight& light, std::size_t rows, std::uint32_t code_bits,
+std::size_t choose_top(const HalvedGrowth& top, const HalvedCosts& below, double unit, double row_bits,
                        double bytes) {
-    const auto most =
-        std::min(static_cast<std::size_t>(halvings_for(0.7 * bytes, double(rows), code_bits)), top.leaves() - 1);
+    const std::size_t all = top.leaves() - 1;
+    const auto within = [&](double part) {
+        return std::min(static_cast<std::size_t>(halvings_for(part * bytes, row_bits)), all);
+    };
     std::vector<HalvedNode> some;
     std::size_t tiles = 0;
-    for (const HalvedNode& node : first_halvings(top.nodes(), most))
+    for (const HalvedNode& node : first_halvings(top.nodes(), within(0.7)))
         if (node.lower == 0 && tiles++ % kSampled == 0) some.push_back(node);
     const std::size_t roots = some.size();
-    HalvedGrowth below({{0, roots + static_cast<std::size_t>(bytes * 8.0 / kSharedBits / kSampled)}});
-    below.run_below(std::move(some), light.costs(), Loop(false), {});
-    const std::vector<double> of_top = falling_gains(top, 1, kSmoothed), of_shared = falling_gains(below, roots, 1);
-    const double row_bits = double(rows) * code_bits * kSeen;
+    HalvedGrowth shared({{0, roots + static_cast<std::size_t>(bytes * 8.0 / kSharedBits / kSampled)}});
+    shared.run_below(std::move(some), below, Loop(false), {});
+    const std::vector<double> of_top = falling_gains(top, 1, kSmoothed),
+                              of_shared = falling_gains(shared, roots, 1);
     double low = 1e-15, high = 1e-1;
     std::size_t best = 0;
     for (int step = 0; step < 60; ++step) {
         const double price = std::sqrt(low * high);
-        const std::size_t halvings = std::min(above(of_top, price * row_bits), top.leaves() - 1);
-        const std::size_t shared = kSampled * above(of_shared, price * kSharedBits * light.cost_unit());
-        const double size = (double(halvings) * (row_bits + 3.0) + double(shared) * kSharedBits) / 8.0;
+        const std::size_t halvings = std::min(above(of_top, price * row_bits), all);
+        const std::size_t others = kSampled * above(of_shared, price * kSharedBits * unit);
+        const double size = (double(halvings) * (row_bits + 3.0) + double(others) * kSharedBits) / 8.0;
         if (size > bytes) low = price;
         else high = price, best = halvings;
     }
-    const auto least = static_cast<std::size_t>(halvings_for(kLeastTop * bytes, double(rows), code_bits));
-    return std::min(std::max(best, least), top.leaves() - 1);
+    return std::max(best, within(kLeastTop));
 }
 
 } // namespace acdf::compress

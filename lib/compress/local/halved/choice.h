@@ -9,7 +9,7 @@
 
 namespace acdf::compress {
 
-/// Of the share of bins that see a tile, the mean: what their codes are counted by before they are made.
+/// Of bins the share that has a code at a halving, about.
 constexpr double kSeen = 0.58;
 /// Bits of a halving in HALV, and in NORM beside codes.
 constexpr double kSharedBits = 8 + 3;
@@ -27,8 +27,9 @@ double mixing_variance(const Blocks& blocks, const BlockMoments& light, const st
 /// leave bytes for fewer tiles. `fixed`: if not 0, the subdivisions.
 RowSize choose_rows(const HalvedGrowth& top, double mixing, double bytes, double of_bin, std::uint32_t fixed);
 
-/// How many halvings have codes of `rows`, so that a bit gains alike there and below.
-std::size_t choose_top(const HalvedGrowth& top, const SharedLight& light, std::size_t rows, std::uint32_t code_bits,
+/// How many halvings have codes of rows, `row_bits` each, so that a bit gains alike there and below. `below`: costs
+/// of what rows share, which are `unit` times those of the top.
+std::size_t choose_top(const HalvedGrowth& top, const HalvedCosts& below, double unit, double row_bits,
                        double bytes);
 
 } // namespace acdf::compress

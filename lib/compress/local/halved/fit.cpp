@@ -3,7 +3,8 @@
 #include "compress/halvings/bit_writer.h"
 #include "compress/halvings/code_bits.h"
 #include "compress/halvings/rows.h"
-#include "compress/local/halved/rows.h"
+#include "compress/local/halved/filled_rows.h"
+#include "compress/local/halved/tile_light.h"
 #include "compress/parallel.h"
 
 #include <algorithm>
@@ -16,6 +17,9 @@ namespace {
 
 constexpr float kAlike = 0.9f; // of a round of growth
 constexpr std::size_t kMostTop = 16384;
+constexpr std::size_t kCountedHalvings = 500; // at the top, by which codes of rows are counted
+// Beside a partner: 8 subdivisions at 128 KiB and 12 at 1 MB.
+constexpr double kFilledSubdivisions = 8.0, kFilledAt = 131072.0, kFilledRises = 0.2, kFilledFewBits = 400e3;
 constexpr double kFewestRows = 387.0, kFewestAt = 1048576.0, kFewestFalls = 0.6; // rows that a size has at least
 
 std::size_t words(std::size_t bits) { return (bits + 31) / 32 * 4; }
@@ -57,22 +61,62 @@ Chunk normals_chunk(const LocalHalvings& fit) {
     return chunk;
 }
 
-LocalHalvingsFitter::LocalHalvingsFitter(const Target& target, const NormalBins& normals)
-    : target_(target), unit_(4.0 * ACDF_PI / integral(target)), blocks_(target), light_(blocks_),
-      squares_(blocks_) {
+LocalHalvingsFitter::LocalHalvingsFitter(const Target& target, const NormalBins& normals, const Partner& partner)
+    : target_(target), unit_(4.0 * ACDF_PI / integral(target)), blocks_(target), light_(blocks_) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
-    const auto scaled = [&](std::uint32_t r, float* out, bool squared) {
-        const float* row = target_.row(r);
-        for (std::uint32_t c = 0; c < target_.columns; ++c) {
-            const double g = double{row[c]} * unit_;
-            out[c] = positive_float(squared ? g * g : g);
-        }
-        return out;
+    if (partner) fill_light(few_normals(normals), partner.light / partner.other);
+    else weigh_light(few_normals(normals));
+}
+
+void LocalHalvingsFitter::weigh_light(SomeNormals normals) {
+    const auto integrate = [&](BlockMoments& moments, const auto& of) {
+        moments.integrate([&](std::uint32_t r, float* out) {
+            const float* row = target_.row(r);
+            for (std::uint32_t c = 0; c < target_.columns; ++c) out[c] = positive_float(of(double{row[c]} * unit_));
+            return out;
+        });
     };
-    light_.integrate([&](std::uint32_t r, float* out) { return scaled(r, out, false); });
-    squares_.integrate([&](std::uint32_t r, float* out) { return scaled(r, out, true); });
-    costs_.emplace(blocks_, light_, few_normals(normals));
-    shared_.emplace(blocks_, worth_of_blocks(blocks_, costs_->normals()), unit_);
+    squares_.emplace(blocks_);
+    integrate(light_, [](double light) { return light; });
+    integrate(*squares_, [](double light) { return light * light; });
+    weigh_by_light(blocks_, light_, normals);
+    shared_.emplace(blocks_, worth_of_blocks(blocks_, normals), unit_);
+    costs_.emplace(blocks_, light_, std::vector<LitNormals>{{&light_, std::move(normals)}});
+}
+
+void LocalHalvingsFitter::fill_light(SomeNormals normals, double ratio) {
+    ratio_ = ratio;
+    radiances_.emplace(blocks_, unit_);
+    filled_light_.emplace(blocks_, normals, *radiances_, ratio);
+    const FilledLight& filled = *filled_light_;
+    const std::vector<std::uint32_t> row_of = blocks_of_texels(blocks_.borders(0)),
+                                     column_of = blocks_of_texels(blocks_.borders(1));
+    const auto integrate = [&](BlockMoments& moments, const auto& of) {
+        moments.integrate([&](std::uint32_t r, float* out) {
+            const float* row = target_.row(r);
+            for (std::uint32_t c = 0; c < target_.columns; ++c) {
+                const HalvedBox block{blocks_.rows() + row_of[r], blocks_.columns() + column_of[c]};
+                const float light = positive_float(double{row[c]} * unit_);
+                out[c] = light > 0.0f ? of(light, filled.spread(block, light)) : 0.0f;
+            }
+            return out;
+        });
+    };
+    integrate(light_, [](float, float spread) { return spread; });
+    for (std::size_t k = 0; k < FilledLight::kClasses; ++k) of_classes_.emplace_back(blocks_);
+    std::vector<LitNormals> lit;
+    for (std::size_t k = 0; k < of_classes_.size(); ++k) {
+        if (filled.classes()[k].weights.empty()) continue;
+        const auto threshold = static_cast<float>(filled.threshold(k));
+        integrate(of_classes_[k], [threshold](float light, float spread) {
+            const float above = std::max(0.0f, light - threshold), own = above * above / light;
+            return spread > 0.0f ? own * (own / spread) : 0.0f;
+        });
+        lit.push_back({&of_classes_[k], filled.classes()[k]});
+    }
+    shared_.emplace(blocks_, worth_of_blocks(blocks_, filled.normals()), unit_);
+    filled_costs_.emplace(blocks_, *shared_, filled);
+    costs_.emplace(blocks_, light_, std::move(lit));
 }
 
 const HalvedGrowth& LocalHalvingsFitter::grown_top(std::size_t halvings) {
@@ -85,29 +129,46 @@ const HalvedGrowth& LocalHalvingsFitter::grown_top(std::size_t halvings) {
 }
 
 RowSize LocalHalvingsFitter::rows_for(double bytes, double of_bin, std::uint32_t fixed) {
+    if (ratio_ > 0.0) {
+        const double n = kFilledSubdivisions * std::pow(bytes / kFilledAt, kFilledRises);
+        return {fixed ? fixed : static_cast<std::uint32_t>(std::clamp(std::lround(n), 3l, 20l)),
+                bytes < kFilledFewBits ? 6u : 7u};
+    }
     const double rows = fixed ? 4.0 * fixed * fixed + 2.0 : kFewestRows * std::pow(bytes / kFewestAt, kFewestFalls);
     const HalvedGrowth& top = grown_top(static_cast<std::size_t>(bytes * 8.0 / (rows * 6.0 * 0.5)) + 1);
     if (!mixing_) mixing_ = mixing_variance(blocks_, light_, top.nodes(), octahedral_bins(8));
     return choose_rows(top, *mixing_, bytes, of_bin, fixed);
 }
 
-std::size_t LocalHalvingsFitter::top_for(double bytes, std::size_t rows, std::uint32_t code_bits) {
-    const HalvedGrowth& top =
-        grown_top(static_cast<std::size_t>(bytes * 8.0 / (double(rows) * code_bits * 0.5)) + 1);
-    return choose_top(top, *shared_, rows, code_bits, bytes);
+std::size_t LocalHalvingsFitter::top_for(double bytes, const NormalBins& bins, std::uint32_t code_bits) {
+    const double rows = double(bins.stored());
+    const HalvedGrowth& few = grown_top(kCountedHalvings);
+    const std::size_t counted = std::min(kCountedHalvings, few.leaves() - 1);
+    const double seen =
+        counted > 0 ? double(codes_of(first_halvings(few.nodes(), counted), bins)) / double(counted) : rows * kSeen;
+    const double row_bits = std::max(1.0, seen * code_bits);
+    const HalvedGrowth& top = grown_top(static_cast<std::size_t>(std::min(bytes * 8.0 / row_bits, 1e9)) + 1);
+    return choose_top(top, below(), shared_->cost_unit(), row_bits, bytes);
 }
 
 /// How many codes rows have: where they see any light of a node that is halved.
 std::size_t LocalHalvingsFitter::codes_of(const std::vector<HalvedNode>& top, const NormalBins& bins) const {
     Normals stored;
+    std::vector<Direction> normals;
     for (std::size_t b = 0; b < bins.normals.size(); ++b)
-        if (bins.weight[b] > 0.0) stored.add(bins.normals[b]);
+        if (bins.weight[b] > 0.0) stored.add(bins.normals[b]), normals.push_back(bins.normals[b]);
+    std::vector<double> thresholds(normals.size());
+    if (radiances_)
+        parallel_for(std::size_t{0}, normals.size(),
+                     [&](std::size_t b) { thresholds[b] = radiances_->seen(normals[b], ratio_).threshold; });
     std::vector<std::vector<std::uint8_t>> sees(top.size(), std::vector<std::uint8_t>(stored.size()));
     parallel_for(std::size_t{0}, top.size(), [&](std::size_t i) {
         if (top[i].lower != 0) return;
         std::vector<float> seen(stored.size());
         light_.seen(top[i].box, stored, seen.data());
-        for (std::size_t b = 0; b < seen.size(); ++b) sees[i][b] = seen[b] > 0.0f;
+        const double brightest = radiances_ ? radiances_->brightest(top[i].box) : 0.0;
+        for (std::size_t b = 0; b < seen.size(); ++b)
+            sees[i][b] = seen[b] > 0.0f && (!radiances_ || brightest > thresholds[b]);
     });
     std::size_t codes = 0;
     for (std::size_t i = top.size(); i-- > 0;) {
@@ -118,53 +179,79 @@ std::size_t LocalHalvingsFitter::codes_of(const std::vector<HalvedNode>& top, co
     return codes;
 }
 
-/// h of a cell: the square of its light, times its measure over its share of a tile's samples.
-BlockMoments LocalHalvingsFitter::light_of_tiles(const RowTree& tree, const std::vector<HalvedNode>& nodes) const {
-    BlockMoments out(blocks_);
-    const HalvedAxes& axes = shared_->costs().axes();
-    const std::uint32_t rows = blocks_.rows(), columns = blocks_.columns();
-    const auto add = [&](HalvedBox box, double share) {
-        std::uint32_t r[2] = {box.rows, box.rows + 1}, c[2] = {box.columns, box.columns + 1};
-        const bool low = box.rows < 2 * rows, left = box.columns < 2 * columns;
-        while (r[0] < rows) r[0] *= 2, r[1] *= 2;
-        while (c[0] < columns) c[0] *= 2, c[1] *= 2;
-        if (low && left) {
-            const double factor = axes.measure(box) / share;
-            for (std::uint32_t i = r[0]; i < r[1]; ++i)
-                for (std::uint32_t k = c[0]; k < c[1]; ++k) {
-                    BlockMoment& to = out[{i, k}];
-                    to = squares_[{i, k}];
-                    for (float& q : to.quad) q = static_cast<float>(double{q} * factor);
-                    to.sum = static_cast<float>(double{to.sum} * factor);
-                }
-            return;
-        }
-        // It cuts blocks: of the part in each, all light comes from the middle.
-        const auto cut = [&](std::uint32_t number, std::uint32_t blocks) {
-            while (number >= 2 * blocks) number /= 2;
-            return number;
-        };
-        for (std::uint32_t i = low ? r[0] : box.rows; i < (low ? r[1] : box.rows + 1); ++i)
-            for (std::uint32_t k = left ? c[0] : box.columns; k < (left ? c[1] : box.columns + 1); ++k) {
-                HalvedBox part{i, k};
-                double of = 1.0; // texels may be larger than blocks
-                for (; !axes.rows.has(part.rows); part.rows /= 2) of *= 0.5;
-                for (; !axes.columns.has(part.columns); part.columns /= 2) of *= 0.5;
-                const double alone = shared_->alone(part) * of;
-                if (!(alone > 0.0)) continue;
-                const double light = alone * alone / (axes.measure(part) * of) * axes.measure(box) / share;
-                const Direction d =
-                    direction_at(target_, 0.5 * (axes.rows.low(part.rows) + axes.rows.high(part.rows)),
-                                 0.5 * (axes.columns.low(part.columns) + axes.columns.high(part.columns)));
-                BlockMoment& to = out[{cut(i, rows), cut(k, columns)}];
-                to = to + moment_of(d, light);
-            }
-    };
-    for (const RowTree::Tile& tile : tree.tiles())
-        for (const RowTree::Leaf& leaf : tile.leaves)
-            if (leaf.share > 0.0) add(nodes[leaf.node].box, leaf.share);
-    out.add_up();
+std::vector<double> LocalHalvingsFitter::weights_of(const std::vector<HalvedNode>& nodes) const {
+    std::vector<double> out(nodes.size());
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        const std::uint32_t lower = nodes[i].lower;
+        if (lower) out[i] = out[lower] + out[lower + 1];
+        else out[i] = filled_costs_ ? filled_costs_->weight(nodes[i].box) : shared_->alone(nodes[i].box);
+    }
     return out;
+}
+
+namespace {
+
+std::vector<HalvedBox> boxes_of(const RowTree& tree, const std::vector<HalvedNode>& nodes) {
+    std::vector<HalvedBox> out;
+    for (const RowTree::Tile& tile : tree.tiles()) out.push_back(nodes[tile.node].box);
+    return out;
+}
+
+/// The row of each bin, in codes; `parts` become what it gives to tiles, by its share.
+void code(const RowTree& tree, const NormalBins& bins, RowParts& parts, LocalHalvings& out) {
+    out.halvings = tree.halvings();
+    out.has_codes = tree.has_codes();
+    out.shares.assign(bins.normals.size(), 0.0f);
+    out.roots.assign(bins.normals.size(), ACDF_NO_ROOT);
+    std::uint32_t count = 0;
+    for (std::size_t b = 0; b < out.roots.size(); ++b)
+        if (bins.weight[b] > 0.0) out.roots[b] = count++;
+    out.rows.resize(count);
+    const HalvingCodes own(out.code_bits);
+    parallel_for(std::size_t{0}, parts.size(), [&](std::size_t b) {
+        if (parts[b].empty()) return;
+        double sum = 0.0;
+        for (const float part : parts[b]) sum += double{part};
+        CodedRow row = tree.row(own, {parts[b].begin(), parts[b].end()}, Unreached::left_out);
+        out.shares[b] = positive_float(sum / (4.0 * ACDF_PI));
+        for (std::size_t t = 0; t < parts[b].size(); ++t)
+            parts[b][t] = static_cast<float>(row.steps[t] * 0x1p-31 * sum);
+        out.rows[out.roots[b]] = std::move(row.codes);
+    });
+}
+
+} // namespace
+
+void LocalHalvingsFitter::mixed(const RowTree& tree, const std::vector<HalvedNode>& nodes, const NormalBins& bins,
+                                LocalHalvings& out) const {
+    const std::vector<HalvedBox> tiles = boxes_of(tree, nodes);
+    const BlockMoments light = light_of_tiles(blocks_, *shared_, *squares_, tree, nodes);
+    const MixedRows rows(light, tiles, bins);
+    RowParts parts = rows.parts();
+    code(tree, bins, parts, out);
+    out.relative_variance = rows.variance(parts);
+}
+
+void LocalHalvingsFitter::filled(const RowTree& tree, const std::vector<HalvedNode>& nodes, const NormalBins& bins,
+                                 LocalHalvings& out) const {
+    const std::vector<HalvedBox> tiles = boxes_of(tree, nodes);
+    std::vector<std::vector<FilledCell>> cells;
+    const HalvedAxes& axes = shared_->costs().axes();
+    for (const RowTree::Tile& tile : tree.tiles()) {
+        cells.emplace_back();
+        for (const RowTree::Leaf& leaf : tile.leaves) {
+            const HalvedBox box = nodes[leaf.node].box;
+            const double alone = shared_->alone(box), measure = axes.measure(box);
+            cells.back().push_back({alone * alone / measure, measure, leaf.share});
+        }
+    }
+    const FilledRows rows(light_, tiles, cells, bins, *radiances_, ratio_);
+    RowParts parts = rows.parts();
+    code(tree, bins, parts, out);
+    out.records.assign(bins.normals.size(), {1.0f, 0.0f});
+    parallel_for(std::size_t{0}, parts.size(), [&](std::size_t b) {
+        if (!parts[b].empty()) out.records[b] = rows.record(b, parts[b], 4.0 * ACDF_PI);
+    });
 }
 
 LocalHalvings LocalHalvingsFitter::fit(const NormalBins& bins, const LocalHalvingsSize& size,
@@ -184,44 +271,14 @@ LocalHalvings LocalHalvingsFitter::fit(const NormalBins& bins, const LocalHalvin
     report(0.2);
     all = std::min(halvings_within(size.bytes, codes, size.code_bits), size.halvings);
     HalvedGrowth growth({{0, all + 1}}, {kAlike});
-    growth.run_below(std::move(top), shared_->costs(), Loop(false),
-                     [&](double share) { report(0.2 + 0.3 * share); });
-    const std::vector<HalvedNode>& nodes = growth.nodes();
-    std::vector<double> weights(nodes.size());
-    for (std::size_t i = nodes.size(); i-- > 0;) {
-        const std::uint32_t lower = nodes[i].lower;
-        weights[i] = lower ? weights[lower] + weights[lower + 1] : shared_->alone(nodes[i].box);
-    }
-    const RowTree tree(nodes, halvings, weights, {target_.row_axis, target_.column_axis});
-    std::vector<HalvedBox> tiles;
-    for (const RowTree::Tile& tile : tree.tiles()) tiles.push_back(nodes[tile.node].box);
-    const BlockMoments light = light_of_tiles(tree, nodes);
+    growth.run_below(std::move(top), below(), Loop(false), [&](double share) { report(0.2 + 0.3 * share); });
+    const RowTree tree(growth.nodes(), halvings, weights_of(growth.nodes()),
+                       {target_.row_axis, target_.column_axis});
     report(0.6);
-    const MixedRows rows(light, tiles, bins);
-    RowParts parts = rows.parts();
-    report(0.9);
     LocalHalvings out;
-    out.halvings = tree.halvings();
-    out.has_codes = tree.has_codes();
     out.code_bits = size.code_bits;
-    out.shares.assign(bins.normals.size(), 0.0f);
-    out.roots.assign(bins.normals.size(), ACDF_NO_ROOT);
-    std::uint32_t count = 0;
-    for (std::size_t b = 0; b < out.roots.size(); ++b)
-        if (bins.weight[b] > 0.0) out.roots[b] = count++;
-    out.rows.resize(count);
-    const HalvingCodes own(size.code_bits);
-    parallel_for(std::size_t{0}, parts.size(), [&](std::size_t b) {
-        if (parts[b].empty()) return;
-        double sum = 0.0;
-        for (const float part : parts[b]) sum += double{part};
-        CodedRow row = tree.row(own, {parts[b].begin(), parts[b].end()}, Unreached::left_out);
-        out.shares[b] = positive_float(sum / (4.0 * ACDF_PI));
-        for (std::size_t t = 0; t < parts[b].size(); ++t)
-            parts[b][t] = static_cast<float>(row.steps[t] * 0x1p-31 * sum);
-        out.rows[out.roots[b]] = std::move(row.codes);
-    });
-    out.relative_variance = rows.variance(parts);
+    if (ratio_ > 0.0) filled(tree, growth.nodes(), bins, out);
+    else mixed(tree, growth.nodes(), bins, out);
     report(1.0);
     return out;
 }

@@ -6,6 +6,8 @@
 #include "compress/halvings/halvings.h"
 #include "compress/halvings/rows.h"
 #include "compress/local/halved/choice.h"
+#include "compress/local/halved/filling.h"
+#include "compress/local/halved/rows.h"
 #include "compress/local/normals.h"
 #include "compress/partner.h"
 #include "compress/store/store.h"
@@ -46,32 +48,50 @@ struct LocalHalvingsSize {
 /// Fits of one probe, of any size. Deterministic for any number of threads.
 class LocalHalvingsFitter {
 public:
-    /// `target` must outlive it. `normals`: bins of any number, weighed as normals occur. Throws
-    /// std::invalid_argument where the target has no energy.
-    LocalHalvingsFitter(const Target& target, const NormalBins& normals);
+    /// `target` must outlive it. `normals`: bins of any number, weighed as normals occur. `partner`: none, or one
+    /// that follows the cosine, by the balance heuristic. Throws std::invalid_argument where the target has no
+    /// energy.
+    LocalHalvingsFitter(const Target& target, const NormalBins& normals, const Partner& partner);
 
     /// Subdivisions and code bits for `bytes` of chunks HALV and NORM, and `of_bin` beside them for each bin;
     /// `fixed`: if not 0, the subdivisions.
     RowSize rows_for(double bytes, double of_bin, std::uint32_t fixed);
-    /// Halvings with codes of so many rows.
-    std::size_t top_for(double bytes, std::size_t rows, std::uint32_t code_bits);
+    /// Halvings with codes of rows of these bins.
+    std::size_t top_for(double bytes, const NormalBins& bins, std::uint32_t code_bits);
     /// Throws std::runtime_error where no tree fits.
     LocalHalvings fit(const NormalBins& bins, const LocalHalvingsSize& size, const Progress& progress);
 
 private:
     const HalvedGrowth& grown_top(std::size_t halvings);
+    void weigh_light(SomeNormals normals);
+    void fill_light(SomeNormals normals, double ratio);
+    const HalvedCosts& below() const {
+        if (filled_costs_) return *filled_costs_;
+        return shared_->costs();
+    }
     std::size_t codes_of(const std::vector<HalvedNode>& top, const NormalBins& bins) const;
-    BlockMoments light_of_tiles(const RowTree& tree, const std::vector<HalvedNode>& nodes) const;
+    std::vector<double> weights_of(const std::vector<HalvedNode>& nodes) const;
+    void mixed(const RowTree& tree, const std::vector<HalvedNode>& nodes, const NormalBins& bins,
+               LocalHalvings& out) const;
+    void filled(const RowTree& tree, const std::vector<HalvedNode>& nodes, const NormalBins& bins,
+                LocalHalvings& out) const;
 
     const Target& target_;
     const double unit_; ///< one over the mean of the target
     const Blocks blocks_;
-    BlockMoments light_, squares_; ///< of g, and of its square
+    BlockMoments light_;                  ///< as tiles are found by
+    std::optional<BlockMoments> squares_; ///< of g^2, without a partner
     std::optional<TopCosts> costs_;
     std::optional<SharedLight> shared_;
     std::optional<HalvedGrowth> top_;
     std::size_t top_asked_ = 0;
     std::optional<double> mixing_;
+    // Beside a partner:
+    double ratio_ = 0.0; ///< samples of ours for one of the partner's; 0: there is none
+    std::optional<Radiances> radiances_;
+    std::optional<FilledLight> filled_light_;
+    std::vector<BlockMoments> of_classes_;
+    std::optional<FilledCosts> filled_costs_;
 };
 
 } // namespace acdf::compress

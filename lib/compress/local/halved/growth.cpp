@@ -38,37 +38,47 @@ SomeNormals few_normals(const NormalBins& bins) {
     return out;
 }
 
-TopCosts::TopCosts(const Blocks& blocks, const BlockMoments& light, SomeNormals normals)
-    : HalvedCosts(blocks.axes()), blocks_(blocks), light_(light), normals_(std::move(normals)),
-      known_(blocks.size()) {
-    for (std::atomic<float>& known : known_) known.store(-1.0f, std::memory_order_relaxed);
-    // What light costs a normal at least: that of all blocks.
-    std::vector<std::vector<double>> of_row(blocks.rows(), std::vector<double>(normals_.weights.size()));
+void weigh_by_light(const Blocks& blocks, const BlockMoments& light, SomeNormals& normals) {
+    std::vector<std::vector<double>> of_row(blocks.rows(), std::vector<double>(normals.weights.size()));
     parallel_for(std::uint32_t{0}, blocks.rows(), [&](std::uint32_t r) {
-        std::vector<float> seen(normals_.weights.size());
+        std::vector<float> seen(normals.weights.size());
         for (std::uint32_t c = 0; c < blocks.columns(); ++c) {
             const HalvedBox box{blocks.rows() + r, blocks.columns() + c};
-            light.seen(box, normals_.normals, seen.data());
+            light.seen(box, normals.normals, seen.data());
             for (std::size_t i = 0; i < seen.size(); ++i)
                 of_row[r][i] += std::sqrt(double{light[box].sum} * double{seen[i]});
         }
     });
     double lit = 0.0;
-    std::vector<double> least(normals_.weights.size());
+    std::vector<double> least(normals.weights.size());
     for (std::size_t i = 0; i < least.size(); ++i) {
         for (const std::vector<double>& row : of_row) least[i] += row[i];
-        if (least[i] > 0.0) lit += normals_.weights[i];
+        if (least[i] > 0.0) lit += normals.weights[i];
     }
     for (std::size_t i = 0; i < least.size(); ++i)
-        normals_.weights[i] = least[i] > 0.0 ? normals_.weights[i] / (lit * least[i]) : 0.0;
+        normals.weights[i] = least[i] > 0.0 ? normals.weights[i] / (lit * least[i]) : 0.0;
+}
+
+TopCosts::TopCosts(const Blocks& blocks, const BlockMoments& light, std::vector<LitNormals> normals)
+    : HalvedCosts(blocks.axes()), blocks_(blocks), light_(light), normals_(std::move(normals)),
+      known_(blocks.size()) {
+    for (std::atomic<float>& known : known_) known.store(-1.0f, std::memory_order_relaxed);
+    std::vector<double> of_row(blocks.rows());
+    parallel_for(std::uint32_t{0}, blocks.rows(), [&](std::uint32_t r) {
+        for (std::uint32_t c = 0; c < blocks.columns(); ++c)
+            of_row[r] += double{cost({blocks.rows() + r, blocks.columns() + c})};
+    });
+    for (const double row : of_row) least_ += row;
 }
 
 double TopCosts::root_sum(HalvedBox box) const {
     thread_local std::vector<float> seen;
-    seen.resize(normals_.weights.size());
-    light_.seen(box, normals_.normals, seen.data());
     double sum = 0.0;
-    for (std::size_t i = 0; i < seen.size(); ++i) sum += normals_.weights[i] * double{std::sqrt(seen[i])};
+    for (const LitNormals& of : normals_) {
+        seen.resize(of.normals.weights.size());
+        of.light->seen(box, of.normals.normals, seen.data());
+        for (std::size_t i = 0; i < seen.size(); ++i) sum += of.normals.weights[i] * double{std::sqrt(seen[i])};
+    }
     return sum;
 }
 
@@ -100,9 +110,6 @@ std::vector<float> worth_of_blocks(const Blocks& blocks, const SomeNormals& of) 
     return out;
 }
 
-namespace {
-
-/// The block that the middle of each texel of an axis lies in.
 std::vector<std::uint32_t> blocks_of_texels(const std::vector<double>& borders) {
     std::vector<std::uint32_t> out;
     for (std::uint32_t block = 0; double(out.size()) < borders.back();) {
@@ -111,8 +118,6 @@ std::vector<std::uint32_t> blocks_of_texels(const std::vector<double>& borders) 
     }
     return out;
 }
-
-} // namespace
 
 SharedLight::SharedLight(const Blocks& blocks, std::vector<float> worth, double unit)
     : blocks_(blocks), worth_(std::move(worth)), unit_(unit) {

@@ -23,30 +23,41 @@ struct SomeNormals {
 /// At most 66: those of bins that are stored, or of coarser ones around them.
 SomeNormals few_normals(const NormalBins& bins);
 
-/// The cost of a node as a tile, where each normal has the share of it that suits it: relative to what the normal's
-/// light costs at least, the mean over normals. With h = g, that is the root of the integral of g times that of
-/// g cos^2 above the horizon.
+/// Normals with the light h2 whose cosines count for them.
+struct LitNormals {
+    const BlockMoments* light;
+    SomeNormals normals;
+};
+
+/// The cost of a node as a tile, where each normal has the share of it that suits it: the root of the integral of h
+/// times that of h2 cos^2 above the horizon, summed over normals by their weights. Where both are the light of the
+/// probe, the integral of it times the cosine is what it comes to in small nodes.
 class TopCosts final : public HalvedCosts {
 public:
-    /// `weights` of normals become such that the least of all costs is 1.
-    TopCosts(const Blocks& blocks, const BlockMoments& light, SomeNormals normals);
+    TopCosts(const Blocks& blocks, const BlockMoments& light, std::vector<LitNormals> normals);
 
     float cost(HalvedBox box) const override;
-    double least_square() const override { return 1.0; }
-    const SomeNormals& normals() const { return normals_; }
+    double least_square() const override { return least_ * least_; }
 
 private:
     double root_sum(HalvedBox box) const;
 
     const Blocks& blocks_;
     const BlockMoments& light_;
-    SomeNormals normals_;
+    std::vector<LitNormals> normals_;
+    double least_ = 0.0;
     mutable std::vector<std::atomic<float>> known_; ///< of each box; below 0: not yet
 };
+
+/// Divides weights by what the light of the probe costs a normal at least, so that they add up to 1 times that.
+void weigh_by_light(const Blocks& blocks, const BlockMoments& light, SomeNormals& normals);
 
 /// What light of a direction is worth: the mean over normals of its cosine over what the normal's light costs. Some
 /// even where no normal sees it, for points without a normal.
 std::vector<float> worth_of_blocks(const Blocks& blocks, const SomeNormals& normals);
+
+/// The block that the middle of each texel of an axis lies in.
+std::vector<std::uint32_t> blocks_of_texels(const std::vector<double>& borders);
 
 /// Light times its worth, and its squares.
 class SharedLight {
