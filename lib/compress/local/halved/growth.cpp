@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kCoarse = 4;     // subdivisions of an octahedron, whose corners stand for all normals
 constexpr std::size_t kMostNormals = 66; // that many
-constexpr float kLeastWorth = 0.01f;     // of the largest
+constexpr float kLeastWorth = 0.1f;      // of the largest
 
 } // namespace
 
