@@ -36,7 +36,7 @@ namespace {
 // 2^23 pixels with budgets up to 8 MiB: light as points and coarse maps; of each texel what tiles are found by; of
 // each byte of the file the cells that it is chosen from, of which there are no more than texels suffice for.
 constexpr std::uint64_t kLocalMemory = 16 << 20, kLocalMemoryOfTexel = 16, kLocalPartnerOfTexel = 20;
-constexpr std::uint64_t kLocalMemoryOfByte = 170, kLocalPartnerOfByte = 120, kLocalCellsOfTexel = 1200;
+constexpr std::uint64_t kLocalMemoryOfByte = 170, kLocalPartnerOfByte = 170, kLocalCellsOfTexel = 1200;
 // Of bins with trees of their own.
 constexpr std::uint64_t kSeparateOfByte = 900, kSeparateOfTexel = 32, kSeparateOfKnot = 32;
 constexpr std::uint64_t kLocalBytesOfCell = 5; // of a file

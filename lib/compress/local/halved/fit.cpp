@@ -44,6 +44,12 @@ std::size_t halvings_within(std::uint64_t bytes, std::size_t codes, std::uint32_
     return low;
 }
 
+std::size_t codes_in(const LocalHalvings& fit) {
+    std::size_t codes = 0;
+    for (const std::vector<std::uint16_t>& row : fit.rows) codes += row.size();
+    return codes;
+}
+
 } // namespace
 
 Chunk normals_chunk(const LocalHalvings& fit) {
@@ -254,33 +260,46 @@ void LocalHalvingsFitter::filled(const RowTree& tree, const std::vector<HalvedNo
     });
 }
 
+LocalHalvings LocalHalvingsFitter::grown(std::vector<HalvedNode> top, std::size_t all, const NormalBins& bins,
+                                         std::uint32_t code_bits, const Progress& progress) const {
+    const std::size_t halvings = top.size() / 2;
+    HalvedGrowth growth({{0, all + 1}}, {kAlike});
+    growth.run_below(std::move(top), below(), Loop(false), [&](double share) { progress(0.6 * share); });
+    const RowTree tree(growth.nodes(), halvings, weights_of(growth.nodes()),
+                       {target_.row_axis, target_.column_axis});
+    progress(0.7);
+    LocalHalvings out;
+    out.code_bits = code_bits;
+    if (ratio_ > 0.0) filled(tree, growth.nodes(), bins, out);
+    else mixed(tree, growth.nodes(), bins, out);
+    progress(1.0);
+    return out;
+}
+
 LocalHalvings LocalHalvingsFitter::fit(const NormalBins& bins, const LocalHalvingsSize& size,
                                        const Progress& progress) {
-    const auto report = [&](double share) {
-        if (progress) progress(share);
-    };
-    const HalvedGrowth& grown = grown_top(size.top);
-    std::size_t halvings = std::min({size.top, size.halvings, grown.leaves() - 1}), codes = 0, all = 0;
+    const HalvedGrowth& whole_top = grown_top(size.top);
+    std::size_t halvings = std::min({size.top, size.halvings, whole_top.leaves() - 1}), codes = 0;
     std::vector<HalvedNode> top;
     for (;; halvings = halvings * 3 / 4) {
-        top = first_halvings(grown.nodes(), halvings);
+        top = first_halvings(whole_top.nodes(), halvings);
         codes = codes_of(top, bins);
         if (bytes_of(halvings, codes, size.code_bits) <= size.bytes) break;
         if (halvings == 0) throw std::runtime_error("no tree fits into the budget");
     }
-    report(0.2);
-    all = std::min(halvings_within(size.bytes, codes, size.code_bits), size.halvings);
-    HalvedGrowth growth({{0, all + 1}}, {kAlike});
-    growth.run_below(std::move(top), below(), Loop(false), [&](double share) { report(0.2 + 0.3 * share); });
-    const RowTree tree(growth.nodes(), halvings, weights_of(growth.nodes()),
-                       {target_.row_axis, target_.column_axis});
-    report(0.6);
-    LocalHalvings out;
-    out.code_bits = size.code_bits;
-    if (ratio_ > 0.0) filled(tree, growth.nodes(), bins, out);
-    else mixed(tree, growth.nodes(), bins, out);
-    report(1.0);
-    return out;
+    const auto attempt = [&](std::size_t most_codes, double begin, double end) {
+        const std::size_t all = std::min(halvings_within(size.bytes, most_codes, size.code_bits), size.halvings);
+        return grown(top, all, bins, size.code_bits, [&](double share) {
+            if (progress) progress(begin + share * (end - begin));
+        });
+    };
+    const bool partner = ratio_ > 0.0;
+    LocalHalvings out = attempt(codes, 0.2, partner ? 0.6 : 1.0);
+    // Beside a partner rows have fewer codes than they might: what those leave is for halvings that all share.
+    const std::size_t used = codes_in(out);
+    if (!partner || used + used / 32 >= codes) return out;
+    LocalHalvings more = attempt(used + used / 64, 0.6, 1.0);
+    return bytes_of(more.halvings.codes.size(), codes_in(more), size.code_bits) <= size.bytes ? more : out;
 }
 
 } // namespace acdf::compress
