@@ -36,7 +36,7 @@ namespace {
 // 2^23 pixels with budgets up to 8 MiB: light as points and coarse maps; of each texel what tiles are found by; of
 // each byte of the file the cells that it is chosen from, of which there are no more than texels suffice for.
 constexpr std::uint64_t kLocalMemory = 16 << 20, kLocalMemoryOfTexel = 16, kLocalPartnerOfTexel = 20;
-constexpr std::uint64_t kLocalMemoryOfByte = 170, kLocalPartnerOfByte = 120, kLocalCellsOfTexel = 1200;
+constexpr std::uint64_t kLocalMemoryOfByte = 170, kLocalPartnerOfByte = 170, kLocalCellsOfTexel = 1200;
 // Of bins with trees of their own.
 constexpr std::uint64_t kSeparateOfByte = 900, kSeparateOfTexel = 32, kSeparateOfKnot = 32;
 constexpr std::uint64_t kLocalBytesOfCell = 5; // of a file
@@ -150,6 +150,10 @@ void LocalConversion::check() {
     if (local_.shape == builder::LocalShape::fast)
         for (const char* option : {"--no-sharing", "--visibility", "--max-weight", "--mis"})
             if (given(option)) throw CLI::ValidationError("--shape", std::string("fast goes without ") + option);
+    if (local_.shape == builder::LocalShape::halvings)
+        for (const char* option : {"--no-sharing", "--visibility", "--max-weight"})
+            if (given(option))
+                throw CLI::ValidationError("--shape", std::string("halvings goes without ") + option);
     if (!visibility_) return;
     if (!scene_.given()) throw CLI::ValidationError("--visibility", "needs --scene MESH");
     for (const char* option : {"--no-sharing", "--cells", "--target-variance", "--max-weight"})
@@ -198,19 +202,33 @@ double gain(const builder::Local& result) {
     return result.accuracy.relative_variance_full_cdf / result.accuracy.relative_variance;
 }
 
+const char* shape_name(builder::LocalShape shape) {
+    switch (shape) {
+    case builder::LocalShape::halvings:
+        return "halvings";
+    case builder::LocalShape::fast:
+        return "fast";
+    default:
+        return "small";
+    }
+}
+
 nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const builder::Local& result) const {
     const builder::LocalAccuracy& a = result.accuracy;
     File file;
     File::from_memory(result.bytes.data(), result.bytes.size(), file);
+    const AcdfNormalRows* const rows = file.local().data().rows_of_normals;
     nlohmann::ordered_json out = {
         {"source", source},
         {"domain", build::parameterization_name(builder::grid_of(loaded.target).parameterization)},
         {"resolution", {loaded.probe.width, loaded.probe.height}},
         {"bytes", result.bytes.size()},
         {"bins", file.description().bin_count},
-        {"tiles", file.blend().tiles ? file.blend().tiles->tile_count : 0},
+        {"tiles", rows                 ? rows->splits + 1
+                  : file.blend().tiles ? file.blend().tiles->tile_count
+                                       : 0},
         {"visibility", file.local().has_visibility() ? file.local().data().visibility.header->row_count : 0},
-        {"shape", result.shape == builder::LocalShape::fast ? "fast" : "small"},
+        {"shape", shape_name(result.shape)},
         {"normals", result.normals},
         {"relative_variance", a.relative_variance},
         {"relative_variance_full_cdf", a.relative_variance_full_cdf},
@@ -237,8 +255,11 @@ std::string summary_of(const builder::Local& result) {
     std::snprintf(text, sizeof text,
                   "%srelative variance %.4g over %u normals: %.3g times less than the probe's own CDF (%.4g); "
                   "%.1f %% of samples above the horizon",
-                  result.shape == builder::LocalShape::fast ? "fast shape, " : "", a.relative_variance,
-                  a.lit_normals, gain(result), a.relative_variance_full_cdf, 100.0 * a.share_above_horizon);
+                  result.shape == builder::LocalShape::halvings
+                      ? ""
+                      : (std::string(shape_name(result.shape)) + " shape, ").c_str(),
+                  a.relative_variance, a.lit_normals, gain(result), a.relative_variance_full_cdf,
+                  100.0 * a.share_above_horizon);
     return text;
 }
 
@@ -365,14 +386,15 @@ void LocalConversion::add_size(CLI::App& command) {
 
 void LocalConversion::add_shape(CLI::App& command) {
     using Shape = builder::LocalShape;
-    constexpr Named<Shape> shapes[] = {{"small", Shape::small}, {"fast", Shape::fast}, {"auto", Shape::automatic}};
+    constexpr Named<Shape> shapes[] = {
+        {"halvings", Shape::halvings}, {"small", Shape::small}, {"fast", Shape::fast}, {"auto", Shape::automatic}};
     add_choice(
         command, "--shape", local_.shape, shapes,
-        "small: the least noise for its bytes; fast: tables that are searched by vectors, for renderers whose "
-        "time goes into calls: these take some 0.6 of the time, at 0.9 to 1.8 times the variance; auto: both are "
-        "made, and fast is chosen where it has no more noise after the same time, and no option asks for what it "
-        "has not")
-        ->option_text("small|fast|auto [auto]")
+        "halvings: one tree, with a row of codes for each normal: the least noise for its bytes; small: curves in "
+        "tiles, for --visibility, --max-weight and other MIS partners than the cosine; fast: tables that are "
+        "searched "
+        "by vectors; auto: halvings, or small where options ask for what that has not")
+        ->option_text("halvings|small|fast|auto [auto]")
         ->group("Size and accuracy");
 }
 

@@ -3,6 +3,8 @@
 #include "build/compressed_budget.h"
 #include "build/errors.h"
 #include "build/lit_bins.h"
+#include "build/local_draft.h"
+#include "build/local_halved.h"
 #include "build/local_size.h"
 #include "build/local_whole.h"
 #include "build/text/options.h"
@@ -23,49 +25,7 @@ namespace {
 using compress::Goal;
 using compress::NormalBins;
 
-constexpr std::uint32_t kTestNormals = 256;
-constexpr int kMostGrowths = 3;       // of the number of tiles
-constexpr std::uint64_t kSlack = 256; // bytes by which files of nearly the same size differ
-
-compress::Description description_of(const compress::Target& target, const Source& source, const LocalOptions& o,
-                                     const NormalBins& bins, const LocalAccuracy& accuracy) {
-    compress::Description d =
-        compress::environment_description(target.columns, target.rows, target.parameterization);
-    d.kind = ACDF_KIND_LOCAL;
-    d.fit = o.sharing ? ACDF_FIT_VARIANCE : o.fit.fit;
-    d.filter = o.target.filter;
-    d.channels = o.target.channels;
-    const double weights[3] = {o.target.weights.r, o.target.weights.g, o.target.weights.b};
-    std::copy(std::begin(weights), std::end(weights), d.channel_weights);
-    d.total = target.total;
-    if (bins.subdivisions > 0) {
-        const auto count = static_cast<std::uint32_t>(bins.normals.size());
-        d.axes.push_back({"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, count, 0.0, double(count)});
-    } else {
-        d.axes.push_back({"normal theta", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, bins.rows, 0.0, ACDF_PI});
-        d.axes.push_back({"normal phi", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, bins.columns, ACDF_PI, -ACDF_PI});
-    }
-    d.metadata = {{"tool", "acdf " ACDF_VERSION},
-                  {"fit.options", option_text(source.reading, o)},
-                  {"source.name", source.name},
-                  {"source.sha256", source.sha256},
-                  {"source.projection", source.projection},
-                  {"accuracy.relative_variance", accuracy_text(accuracy.relative_variance)},
-                  {"accuracy.relative_variance_full_cdf", accuracy_text(accuracy.relative_variance_full_cdf)},
-                  {"accuracy.share_above_horizon", accuracy_text(accuracy.share_above_horizon)}};
-    return d;
-}
-
-Local measured(std::vector<std::uint8_t> bytes, const compress::Target& target, const LocalOptions& options) {
-    Local out = {std::move(bytes), options.shape, {}, 0};
-    const std::vector<Normal> normals = test_normals(options.scene, kTestNormals);
-    File file;
-    if (const Status status = File::from_memory(out.bytes.data(), out.bytes.size(), file); !status.ok())
-        throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
-    out.accuracy = summary(measure_normals(file, target, normals));
-    out.normals = static_cast<std::uint32_t>(normals.size());
-    return out;
-}
+constexpr int kMostGrowths = 3; // of the number of tiles
 
 /// Everything of a file but its accuracy.
 struct LocalDraft {
@@ -73,21 +33,12 @@ struct LocalDraft {
     compress::Description description;
 };
 
-/// Stores a draft with the accuracy that it has.
-Local finish(LocalDraft draft, const compress::Target& target, const Source& source, const LocalOptions& options,
-             const NormalBins& bins) {
-    Local out = measured(compress::store(draft.tree, draft.description), target, options);
-    const compress::Description told = description_of(target, source, options, bins, out.accuracy);
-    draft.description.metadata = told.metadata; // of the same size as before
-    out.bytes = compress::store(draft.tree, draft.description, options.codec);
-    return out;
-}
-
-float mean_share(const std::vector<AcdfPartnerRecord>& records, const NormalBins& bins) {
-    double sum = 0.0;
-    for (std::size_t b = 0; b < records.size(); ++b)
-        sum += bins.weight[b] * static_cast<double>(records[b].recommended_light_share);
-    return static_cast<float>(std::clamp(sum, 1e-3, 1.0)); // weights add up to 1
+Local finish(const LocalDraft& draft, const compress::Target& target, const Source& source,
+             const LocalOptions& options, const NormalBins& bins) {
+    const Store store = [&](const compress::Description& description, AcdfCodec codec) {
+        return compress::store(draft.tree, description, codec);
+    };
+    return finish(draft.description, store, target, source, options, bins);
 }
 
 /// The first four fifths of the work.
@@ -104,9 +55,7 @@ LocalDraft shared_draft(const compress::LocalFit& fit, const compress::Target& t
     draft.description.chunks = compress::shared_chunks(fit.shared);
     draft.description.chunks.push_back(
         compress::local_chunk(static_cast<float>(options.cosine_share), fit.bright_tiles));
-    if (options.mis)
-        draft.description.chunks.push_back(
-            compress::partner_chunk(options.mis, mean_share(fit.records, bins), fit.records));
+    if (options.mis) draft.description.chunks.push_back(partner_chunk(options.mis, fit.records, bins));
     return draft;
 }
 
@@ -131,17 +80,6 @@ std::uint64_t bytes_of(const LocalDraft& draft) { return compress::store(draft.t
 
 /// Whether an error names the least size that would do: finding it takes a fit.
 enum class Least { told, unheard };
-
-/// A size is too small.
-struct OutOfReach : std::runtime_error {
-    std::uint64_t least;
-
-    OutOfReach(std::uint64_t budget, std::uint64_t least_bytes)
-        : std::runtime_error("a size of " + std::to_string(budget) +
-                             " bytes is out of reach; the smallest possible is about " +
-                             std::to_string(least_bytes)),
-          least(least_bytes) {}
-};
 
 /// Of a file that has bins, but nothing in them: known before anything is fitted.
 std::uint64_t bytes_of_bins(const compress::Target& target, const Source& source, const LocalOptions& options,
@@ -174,9 +112,7 @@ std::uint64_t whole_of(const LocalOptions& options, std::uint64_t local, compres
 void add_visibility(LocalDraft& draft, const compress::Target& target, const LocalOptions& options,
                     std::uint64_t budget, const Progress& progress) {
     const std::vector<std::uint8_t> bytes = compress::store(draft.tree, draft.description);
-    File file;
-    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
-        throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
+    const File file = opened(bytes);
     compress::VisibilitySize size;
     const std::uint64_t record =
         (sizeof(AcdfChunk) + ACDF_ALIGNMENT) * (options.visibility.portals.empty() ? 1 : 2);
@@ -362,41 +298,7 @@ Local build_to_variance(const compress::Target& target, const Source& source, co
             return std::nullopt; // bins alone may take more
         }
     };
-    const auto reaches = [&](const std::optional<Local>& made) {
-        return made && made->accuracy.relative_variance <= options.goal.variance;
-    };
-    constexpr double smallest = 256.0, largest = 64.0 * 1048576.0;
-    double low = 16384.0, high = 65536.0;
-    std::optional<Local> best = at(high);
-    for (std::size_t bytes = 0; !reaches(best);) {
-        const bool grown = !best || best->bytes.size() > bytes; // else nothing is left to store
-        if (high >= largest || !grown)
-            throw std::runtime_error("a relative variance of " + option_number(options.goal.variance) +
-                                     " is out of reach; " + (grown ? "64 MiB" : std::to_string(bytes) + " bytes") +
-                                     " have " +
-                                     (best ? option_number(best->accuracy.relative_variance) : "no room"));
-        bytes = best ? best->bytes.size() : 0;
-        low = high;
-        high = std::min(4.0 * high, largest);
-        best = at(high);
-    }
-    for (; low < 65536.0 && low >= smallest; low /= 4.0) { // not the first size that was tried is too small
-        std::optional<Local> less = at(low);
-        if (!reaches(less)) break;
-        high = low;
-        best = std::move(less);
-    }
-    for (int step = 0; step < 7; ++step) {
-        share = 0.3 + 0.1 * step;
-        const double middle = std::sqrt(low * high);
-        if (std::optional<Local> candidate = at(middle); reaches(candidate)) {
-            high = middle;
-            best = std::move(candidate);
-        } else {
-            low = middle;
-        }
-    }
-    return std::move(*best);
+    return smallest_of_variance(options.goal.variance, at, [&](double now) { share = now; });
 }
 
 Local build_separate(const compress::Target& target, const Source& source, const LocalOptions& options,
@@ -429,6 +331,21 @@ Local build_separate(const compress::Target& target, const Source& source, const
 
 } // namespace
 
+namespace {
+
+std::string shape_text(compress::LocalShape shape) {
+    switch (shape) {
+    case compress::LocalShape::small:
+        return "--shape small ";
+    case compress::LocalShape::fast:
+        return "--shape fast ";
+    default:
+        return "--shape halvings ";
+    }
+}
+
+} // namespace
+
 std::string option_text(const std::string& reading, const LocalOptions& o) {
     std::string text = reading + target_text(o.target) + codec_text(o.codec);
     if (o.subdivisions > 0) text += "--normals " + std::to_string(o.subdivisions) + " ";
@@ -439,7 +356,7 @@ std::string option_text(const std::string& reading, const LocalOptions& o) {
     if (o.visibility.scene && o.scene_text.find("--visibility") == std::string::npos) text += "--visibility ";
     if (o.cosine_share > 0.0) text += "--cosine-share " + option_number(o.cosine_share) + " ";
     if (o.sharing) {
-        text += shape_text(o);
+        if (o.shape_from == ShapeFrom::request) text += shape_text(o.shape);
         if (o.max_weight > 0.0) text += "--max-weight " + option_number(o.max_weight) + " ";
         if (o.tiles > 0) text += "--tiles " + std::to_string(o.tiles) + " ";
         return text + goal_text(o.goal);
@@ -457,6 +374,7 @@ namespace {
 Local build_to_goal(const compress::Target& target, const Source& source, const LocalOptions& options,
                     const Progress& progress) {
     if (!options.sharing) return build_separate(target, source, options, progress);
+    if (options.shape == compress::LocalShape::halvings) return build_halved(target, source, options, progress);
     Tried tried(target);
     switch (options.goal.kind) {
     case Goal::Kind::budget:

@@ -27,9 +27,8 @@ struct SceneVisibility {
 
 /// Why a local file has its shape.
 enum class ShapeFrom {
-    necessity, ///< it is small, as options ask for what fast has not
-    request,   ///< of the two that there are
-    comparison ///< build_local_in_any_shape chooses
+    options, ///< it suits the others
+    request  ///< it was asked for
 };
 
 /// What `acdf local` was asked for, beside the probe.
@@ -45,7 +44,7 @@ struct LocalOptions {
     bool sharing = true;
     compress::LocalShape shape =
         compress::LocalShape::small; ///< with sharing; see LocalFitter for what goes with fast
-    ShapeFrom shape_from = ShapeFrom::necessity;
+    ShapeFrom shape_from = ShapeFrom::options;
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
     compress::FitOptions fit;                                   ///< of a bin's tree, without sharing
     double cosine_share = 0.0;
@@ -58,9 +57,6 @@ struct LocalOptions {
 /// All options that shape the file, in one spelling: its metadata `fit.options`.
 std::string option_text(const std::string& reading, const LocalOptions& options);
 
-/// The part of option_text that names the shape; empty where none was asked for.
-std::string shape_text(const LocalOptions& options);
-
 struct Local {
     std::vector<std::uint8_t> bytes;
     compress::LocalShape shape = compress::LocalShape::small;
@@ -71,15 +67,5 @@ struct Local {
 /// Throws std::invalid_argument where the target has no energy, std::runtime_error where the goal is out of reach.
 Local build_local(const compress::Target& target, const Source& source, const LocalOptions& options,
                   const Progress& progress = {});
-
-/// Makes both shapes, and chooses fast where it is at most kFastIsWorth times as noisy and as large (of those that
-/// reach a variance: no larger), small where it cannot be made.
-Local build_local_in_any_shape(const compress::Target& target, const Source& source, const LocalOptions& options,
-                               const Progress& progress = {});
-
-/// A sample and a pdf take 200 and 130 ns of the small shape and 130 and 64 of the fast one
-/// (docs/performance.md, 1 MiB), and a shadow ray and a BRDF beside them 500 (acdf sweep): 830 to 694 ns. So as
-/// much variance, and more, is even after the same time.
-constexpr double kFastIsWorth = 1.15;
 
 } // namespace acdf::build

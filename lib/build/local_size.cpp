@@ -28,8 +28,7 @@ NormalBins bins_of(const LocalOptions& o, std::uint32_t subdivisions) {
     return bins;
 }
 
-NormalBins bins_for(const LocalOptions& o, double bytes) {
-    const std::uint32_t all = subdivisions_for(o.shape, bytes);
+NormalBins bins_as_many(const LocalOptions& o, std::uint32_t all) {
     NormalBins bins = bins_of(o, o.subdivisions > 0 ? o.subdivisions : all);
     if (o.subdivisions > 0 || o.columns > 0 || o.scene.empty()) return bins;
     const std::size_t rows = 4 * std::size_t{all} * all + 2;
@@ -39,6 +38,10 @@ NormalBins bins_for(const LocalOptions& o, double bytes) {
         bins = std::move(next);
     }
     return bins;
+}
+
+NormalBins bins_for(const LocalOptions& o, double bytes) {
+    return bins_as_many(o, subdivisions_for(o.shape, bytes));
 }
 
 namespace {

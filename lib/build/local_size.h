@@ -12,6 +12,9 @@ namespace acdf::build {
 /// Bins by the options; of so many subdivisions if those name none.
 compress::NormalBins bins_of(const LocalOptions& options, std::uint32_t subdivisions);
 
+/// The same; for the few normals of a scene so dense that as many are stored.
+compress::NormalBins bins_as_many(const LocalOptions& options, std::uint32_t subdivisions);
+
 /// Bins for a file of `bytes`. For the few normals of a scene they can be denser at the same cost.
 compress::NormalBins bins_for(const LocalOptions& options, double bytes);
 

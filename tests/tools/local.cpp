@@ -34,7 +34,7 @@ protected:
         write_rgb(path, 64, 32, rgb);
     }
 
-    /// Of the small shape, if no other is asked for: by default two files are made.
+    /// Of the small shape, if no other is asked for.
     json made(std::vector<std::string> options, const std::string& source = "") {
         if (std::find(options.begin(), options.end(), "--shape") == options.end())
             options.insert(options.end(), {"--shape", "small"});
@@ -65,7 +65,7 @@ TEST_F(LocalCommand, OfAPartnerReportsIt) {
     EXPECT_EQ(info.at("partner").at("kind"), "cosine");
     EXPECT_NEAR(info.at("partner").at("share").get<double>(), 2.0 / 3.0, 1e-6);
     EXPECT_GT(info.at("partner").at("recommended_light_share").get<double>(), 0.0);
-    EXPECT_EQ(info.at("options"), "--mis cosine --shares 2:1 --budget 49152");
+    EXPECT_EQ(info.at("options"), "--mis cosine --shares 2:1 --shape small --budget 49152");
     const json measured = json::parse(run_acdf({"measure", output, "--against", probe, "--json"}).out);
     EXPECT_TRUE(measured.at("combined").get<bool>());
     EXPECT_EQ(measured.at("support_violations"), 0);
@@ -192,44 +192,31 @@ TEST_F(LocalCommand, WrongUsageIsOneLine) {
     expect_usage({"--cosine-share", "1"}, "--cosine-share");
     expect_usage({"--shape", "round"}, "--shape");
     for (const char* other : {"--no-sharing", "--visibility"}) expect_usage({"--shape", "fast", other}, other);
-    expect_usage({"--shape", "fast", "--max-weight", "20"}, "--max-weight");
+    for (const char* shape : {"fast", "halvings"})
+        expect_usage({"--shape", shape, "--max-weight", "20"}, "--max-weight");
     expect_usage({"--shape", "fast", "--mis", "cosine"}, "--mis");
     expect_usage({"--shape", "fast", "--normals", "8x4"}, "--no-sharing");
 }
 
-// Both shapes are made, and the fast one chosen where it has no more noise after the same time.
-TEST_F(LocalCommand, ChoosesTheShape) {
-    const std::string lamp = folder / "lamp.pfm"; // beside dark: steps of 255 are coarse there
-    write_probe(lamp, [](double phi, double z) {
-        return std::hypot(phi, z - 0.4) < 0.1 ? 1e4 : 0.01 + (z > 0.0 ? z : 0.0);
-    });
-    int fast_ones = 0, small_ones = 0;
-    for (const std::string& source : {probe, lamp})
-        for (const char* budget : {"12KiB", "24KiB", "64KiB"}) {
-            if (acdf_test::kSanitized && budget != std::string("64KiB")) continue; // the same code
-            const json of_fast = made({"--shape", "fast", "--budget", budget}, source);
-            const json of_small = made({"--shape", "small", "--budget", budget}, source);
-            const double fast = of_fast.at("relative_variance"), small = of_small.at("relative_variance");
-            const bool as_small = of_fast.at("bytes").get<double>() <= 1.15 * of_small.at("bytes").get<double>();
-            const json told = json::parse(run_acdf({"info", "--json", output}).out);
-            EXPECT_EQ(told["options"].get<std::string>().substr(0, 14), "--shape small ");
-            const json chosen = made({"--shape", "auto", "--budget", budget}, source);
-            const bool is_fast = chosen.at("shape") == "fast";
-            EXPECT_EQ(is_fast, as_small && fast <= 1.15 * small) << budget;
-            EXPECT_EQ(chosen.at("relative_variance").get<double>(), is_fast ? fast : small);
-            const json info = json::parse(run_acdf({"info", "--json", output}).out);
-            EXPECT_EQ(info["options"].get<std::string>().find("--shape"), std::string::npos);
-            EXPECT_EQ(info["local"].contains("shape"), is_fast);
-            ++(is_fast ? fast_ones : small_ones);
-        }
-    if (!acdf_test::kSanitized) {
-        EXPECT_GT(fast_ones, 0);
-        EXPECT_GT(small_ones, 0);
-    }
-    const std::string by_default = folder / "default.acdf"; // as the last one
-    EXPECT_EQ(run_acdf({"local", lamp, "-o", by_default, "--budget", "64KiB"}).code, 0);
-    EXPECT_EQ(read_text(by_default), read_text(output));
-    EXPECT_EQ(made({"--shape", "auto", "--budget", "48KiB", "--mis", "cosine"}).at("shape"), "small");
+TEST_F(LocalCommand, IsOneTreeOfHalvingsByDefault) {
+    const Result result = run_acdf({"local", probe, "-o", output, "--json", "--budget", "48KiB"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const json report = json::parse(result.out);
+    EXPECT_EQ(report["shape"], "halvings");
+    EXPECT_GT(report["tiles"], 20);
+    EXPECT_LE(report["bytes"], 48 << 10);
+    EXPECT_GE(report["bytes"], 40 << 10); // the map has no more texels
+    EXPECT_EQ(report["support_violations"], 0);
+    const json info = json::parse(run_acdf({"info", output, "--json"}).out);
+    EXPECT_EQ(info["local"]["shape"], "halvings");
+    EXPECT_EQ(info["local"]["tiles"], report["tiles"]);
+    EXPECT_EQ(info["options"].get<std::string>().find("--shape"), std::string::npos);
+    const Result measured = run_acdf({"measure", output, "--against", probe, "--json"});
+    EXPECT_EQ(json::parse(measured.out)["relative_variance"], report["relative_variance"]);
+    EXPECT_EQ(run_acdf({"validate", output}).code, 0);
+    EXPECT_LT(report["relative_variance"], made({"--shape", "small", "--budget", "48KiB"})["relative_variance"]);
+    // What it has not.
+    EXPECT_EQ(made({"--shape", "auto", "--budget", "48KiB", "--mis", "brdf"}).at("shape"), "small");
     EXPECT_EQ(made({"--shape", "auto", "--budget", "24KiB", "--max-weight", "50"}).at("shape"), "small");
 }
 

@@ -221,15 +221,13 @@ enum class BinTarget {
     centre ///< the middle one, as in ibid., §7.1: biased for others, which may see what it does not
 };
 
-/// How bins that share tiles are stored.
+/// How bins of normals are stored that share what they can.
 enum class LocalShape {
-    small,    ///< least noise for its bytes
-    fast,     ///< grids in tiles and sums in rows, which are searched by vectors: samples and pdfs take 0.6 of the
-              ///< time
-    automatic ///< Both are made. Fast is taken where its variance and its size are at most 1.15 times those of
-              ///< small: then it has no more noise after the same time. Where the goal is a variance, fast is
-              ///< taken where its file is no larger. Small is taken else, and where options ask for what fast
-              ///< lacks.
+    small,    ///< curves in tiles and a byte a split in rows: knows visibility cells, bounds on weights, and all
+              ///< partners
+    fast,     ///< grids in tiles and sums in rows, which are searched by vectors
+    halvings, ///< one tree of halvings, with a row of codes for each bin: the least noise for its bytes
+    automatic ///< halvings, or small where options ask for what that has not
 };
 
 /// A point of a scene where light is gathered: on a surface, or in the air.

@@ -32,14 +32,14 @@ Environment make(const Target& target, const EnvironmentOptions& given, const bu
 Local make(const Target& target, const LocalOptions& given, const build::Progress& progress) {
     build::LocalOptions options = internal(given);
     options.target = target.data()->options;
-    const auto build =
-        options.shape_from == build::ShapeFrom::comparison ? build::build_local_in_any_shape : build::build_local;
-    build::Local made = build(target.data()->grid, source_of(given, target), options, progress);
+    build::Local made = build::build_local(target.data()->grid, source_of(given, target), options, progress);
     Local out;
     out.bytes = std::move(made.bytes);
     out.accuracy = made.accuracy;
     out.normals = made.normals;
-    out.shape = made.shape == compress::LocalShape::fast ? LocalShape::fast : LocalShape::small;
+    out.shape = made.shape == compress::LocalShape::halvings ? LocalShape::halvings
+                : made.shape == compress::LocalShape::fast   ? LocalShape::fast
+                                                             : LocalShape::small;
     out.bad_texels = target.data()->bad;
     return out;
 }

@@ -154,6 +154,17 @@ build::SceneVisibility internal(const Visibility& visibility) {
 
 } // namespace
 
+compress::LocalShape shape_of(const LocalOptions& options) {
+    switch (options.shape) {
+    case LocalShape::small:
+        return compress::LocalShape::small;
+    case LocalShape::fast:
+        return compress::LocalShape::fast;
+    default:
+        return may_be_halvings(options) ? compress::LocalShape::halvings : compress::LocalShape::small;
+    }
+}
+
 build::LocalOptions internal(const LocalOptions& options) {
     build::LocalOptions out;
     out.target = internal(options.target);
@@ -166,10 +177,8 @@ build::LocalOptions internal(const LocalOptions& options) {
     out.scene = internal(options.normals);
     out.mis = internal(options.mis);
     out.sharing = options.sharing;
-    out.shape = options.shape == LocalShape::fast ? compress::LocalShape::fast : compress::LocalShape::small;
-    out.shape_from = !may_be_fast(options)                    ? build::ShapeFrom::necessity
-                     : options.shape == LocalShape::automatic ? build::ShapeFrom::comparison
-                                                              : build::ShapeFrom::request;
+    out.shape = shape_of(options);
+    out.shape_from = options.shape == LocalShape::automatic ? build::ShapeFrom::options : build::ShapeFrom::request;
     out.bin_target =
         options.bin_target == BinTarget::centre ? compress::BinTarget::centre : compress::BinTarget::mean;
     out.fit = internal(options.fit);

@@ -18,6 +18,8 @@ build::TableOptions internal(const TableOptions& options, std::uint64_t bins);
 
 // Whether no option asks for what the fast shape has not.
 bool may_be_fast(const LocalOptions& options);
+/// Whether one tree of halvings has what options ask for.
+bool may_be_halvings(const LocalOptions& options);
 
 // Throw build::OptionError for what is out of range or contradicts itself.
 void check(const TargetOptions& options);

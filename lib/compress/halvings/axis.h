@@ -21,6 +21,7 @@ public:
     /// The steps of a range: from low(n) up to high(n).
     std::uint32_t low(std::uint32_t n) const { return steps_[n].low; }
     std::uint32_t high(std::uint32_t n) const { return steps_[n].high; }
+    bool has(std::uint32_t n) const { return n < steps_.size() && steps_[n].high > steps_[n].low; }
     bool can_halve(std::uint32_t n) const {
         if (n < end_ / 2) return true;
         return n < end_ && borders_[n - end_ / 2 + 1] - borders_[n - end_ / 2] == 2;

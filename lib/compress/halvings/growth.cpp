@@ -123,6 +123,27 @@ void HalvedGrowth::reserve() {
 
 void HalvedGrowth::run(const HalvedCosts& costs, const Loop& loop, const std::function<void(double)>& round) {
     begin(costs);
+    grow(costs, loop, round);
+}
+
+void HalvedGrowth::run_below(std::vector<HalvedNode> top, const HalvedCosts& costs, const Loop& loop,
+                             const std::function<void(double)>& round) {
+    clear();
+    nodes_ = std::move(top);
+    double total = 0.0;
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+        if (nodes_[i].lower != 0) continue;
+        nodes_[i].axis = -1;
+        nodes_[i].cost = costs.cost(nodes_[i].box);
+        total += double{nodes_[i].cost};
+        totals_.push_back(total);
+    }
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i)
+        if (nodes_[i].lower == 0) look_later(costs, i);
+    grow(costs, loop, round);
+}
+
+void HalvedGrowth::grow(const HalvedCosts& costs, const Loop& loop, const std::function<void(double)>& round) {
     while (leaves() < size_.leaves && !is_reached() && choose() > 0) {
         halve(costs, loop);
         predict(costs);
@@ -130,8 +151,7 @@ void HalvedGrowth::run(const HalvedCosts& costs, const Loop& loop, const std::fu
     }
 }
 
-/// One leaf where the map is as even as sums in floats are exact.
-void HalvedGrowth::begin(const HalvedCosts& costs) {
+void HalvedGrowth::clear() {
     nodes_.clear();
     next_.clear();
     later_.clear();
@@ -140,14 +160,23 @@ void HalvedGrowth::begin(const HalvedCosts& costs) {
     heavy_ = 0;
     size_ = sizes_.back();
     predicted_ = sizes_.size() == 1;
+}
+
+/// One leaf where the map is as even as sums in floats are exact.
+void HalvedGrowth::begin(const HalvedCosts& costs) {
+    clear();
     nodes_.emplace_back();
     nodes_[0].cost = costs.cost({});
     totals_.push_back(double{nodes_[0].cost});
     if (costs.variance(totals_[0]) < kEven) return;
-    look(costs, nodes_[0]);
-    if (nodes_[0].axis < 0) return;
-    later_.push_back(key_of(nodes_[0].gain, 0));
-    heavy_ += nodes_[0].gain == kHeavy;
+    look_later(costs, 0);
+}
+
+void HalvedGrowth::look_later(const HalvedCosts& costs, std::uint32_t node) {
+    look(costs, nodes_[node]);
+    if (nodes_[node].axis < 0) return;
+    later_.push_back(key_of(nodes_[node].gain, node));
+    heavy_ += nodes_[node].gain == kHeavy;
 }
 
 void HalvedGrowth::look(const HalvedCosts& costs, HalvedNode& node) const {

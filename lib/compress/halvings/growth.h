@@ -46,6 +46,9 @@ public:
     void reserve();
     /// Grows the tree. `round` is called after each with the share that is there; it may be empty.
     void run(const HalvedCosts& costs, const Loop& loop, const std::function<void(double)>& round);
+    /// Goes on from a tree, or several: from those of `top` whose `lower` is 0, and by these costs.
+    void run_below(std::vector<HalvedNode> top, const HalvedCosts& costs, const Loop& loop,
+                   const std::function<void(double)>& round);
 
     const std::vector<HalvedNode>& nodes() const { return nodes_; }
     std::size_t leaves() const { return totals_.size(); }
@@ -54,7 +57,10 @@ public:
     std::uint32_t code_bits() const { return size_.code_bits; } ///< that suit the tree
 
 private:
+    void clear();
     void begin(const HalvedCosts& costs);
+    void grow(const HalvedCosts& costs, const Loop& loop, const std::function<void(double)>& round);
+    void look_later(const HalvedCosts& costs, std::uint32_t node);
     bool is_reached() const { return totals_.back() <= limits_.cost && heavy_ == 0; }
     bool is_heavy(const HalvedCosts& costs, const HalvedNode& node) const;
     void look(const HalvedCosts& costs, HalvedNode& node) const;

@@ -20,9 +20,10 @@
 
 namespace acdf::compress {
 
-/// How bins that share tiles are stored: curves in tiles and a byte a split in rows, which take the fewest bytes,
-/// or grids in tiles and sums in rows, which are searched fastest (format/SPEC.md, section 10.6).
-enum class LocalShape { small, fast };
+/// How bins that share tiles are stored: curves in tiles and a byte a split in rows, which know visibility cells
+/// and bounds on weights; grids in tiles and sums in rows, which are searched by vectors (format/SPEC.md,
+/// section 10.6); or one tree of halvings, with a row of codes for each (local/halved/fit.h).
+enum class LocalShape { small, fast, halvings };
 
 /// How large a local environment map becomes.
 struct LocalSize {

@@ -62,10 +62,10 @@ Bytes description_payload(const Description& d) {
 
 namespace {
 
-Bytes bins_payload(const EncodedTree& tree, const Description& d) {
-    if (tree.roots.size() != d.shares.size()) throw std::invalid_argument("one share a bin is needed");
+Bytes bins_payload(const std::vector<std::uint32_t>& roots, const Description& d) {
+    if (roots.size() != d.shares.size()) throw std::invalid_argument("one share a bin is needed");
     Bytes bytes;
-    for (std::size_t i = 0; i < tree.roots.size(); ++i) append(bytes, AcdfBin{tree.roots[i], d.shares[i]});
+    for (std::size_t i = 0; i < roots.size(); ++i) append(bytes, AcdfBin{roots[i], d.shares[i]});
     return bytes;
 }
 
@@ -227,7 +227,7 @@ Chunk partner_chunk(const Partner& partner, float recommended_light_share,
 }
 
 std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& description, AcdfCodec codec) {
-    return store_chunks({{ACDF_CHUNK_BINS, ACDF_CHUNK_FLAG_CRITICAL, bins_payload(tree, description)},
+    return store_chunks({{ACDF_CHUNK_BINS, ACDF_CHUNK_FLAG_CRITICAL, bins_payload(tree.roots, description)},
                          {ACDF_CHUNK_TREE, ACDF_CHUNK_FLAG_CRITICAL, tree.bytes}},
                         description, codec);
 }
@@ -235,6 +235,13 @@ std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& desc
 std::vector<std::uint8_t> store(const Halvings& tree, const Description& description, AcdfCodec codec) {
     return store_chunks({{ACDF_CHUNK_HALVINGS, ACDF_CHUNK_FLAG_CRITICAL, halvings_chunk(tree)}}, description,
                         codec);
+}
+
+std::vector<std::uint8_t> store(const Halvings& tree, const std::vector<std::uint32_t>& roots,
+                                const Description& description, AcdfCodec codec) {
+    return store_chunks({{ACDF_CHUNK_BINS, ACDF_CHUNK_FLAG_CRITICAL, bins_payload(roots, description)},
+                         {ACDF_CHUNK_HALVINGS, ACDF_CHUNK_FLAG_CRITICAL, halvings_chunk(tree)}},
+                        description, codec);
 }
 
 std::uint64_t halvings_room(const Description& description, std::uint64_t file_bytes) {

@@ -93,6 +93,9 @@ std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& desc
 /// The same of a tree of halvings.
 std::vector<std::uint8_t> store(const Halvings& tree, const Description& description,
                                 AcdfCodec codec = ACDF_CODEC_NONE);
+/// The same of a local environment on a tree of halvings; `roots`: of each bin its row, or ACDF_NO_ROOT.
+std::vector<std::uint8_t> store(const Halvings& tree, const std::vector<std::uint32_t>& roots,
+                                const Description& description, AcdfCodec codec = ACDF_CODEC_NONE);
 /// What chunks DESC and META hold.
 std::vector<std::uint8_t> description_payload(const Description& description);
 std::vector<std::uint8_t> metadata_payload(const Metadata& metadata);

@@ -189,9 +189,9 @@ def build_local(
     max_weight: of the samples of all normals that accuracy is measured for.
     cosine_share: of samples that are taken around the normal instead, in [0, 0.99].
     sharing: bins share tiles; else each has a tree of its own.
-    shape: "small", the least noise for its bytes, or "fast", a sample from which takes two thirds of the time and a pdf half.
-        Fast files share tiles, and have neither max_weight nor an MIS partner. "auto" makes both, and chooses fast where it has no
-        more noise after the same time.
+    shape: "halvings", one tree with a row of codes for each bin: the least noise for its bytes; "small", curves in tiles, for
+        max_weight and MIS partners other than the cosine; "fast", which is searched by vectors, and has neither max_weight nor an
+        MIS partner. "auto" makes halvings, or small where options ask for what that has not.
     """
     return open(_acdf.build_local(image, _options({k: v for k, v in locals().items() if k != "image"})))
 

@@ -98,9 +98,10 @@ builder::LocalOptions of_budget(std::uint64_t bytes, builder::LocalShape shape) 
     return out;
 }
 
-constexpr builder::LocalShape kShapes[] = {builder::LocalShape::fast, builder::LocalShape::small};
+constexpr builder::LocalShape kShapes[] = {builder::LocalShape::fast, builder::LocalShape::small,
+                                           builder::LocalShape::halvings};
 
-TEST(PointsWithoutNormal, OfBothShapes) {
+TEST(PointsWithoutNormal, OfEveryShape) {
     for (const builder::LocalShape shape : kShapes)
         for (const std::uint64_t bytes : {12u << 10, 48u << 10, 160u << 10}) {
             if (acdf_test::kSanitized && bytes > 12u << 10) break; // the same code, on more of it
@@ -131,7 +132,7 @@ TEST(PointsWithoutNormal, OfOtherGoals) {
     options.max_weight = 30.0;
     expect_serves_points(options, "largest weight");
     options = of_budget(48 << 10, builder::LocalShape::automatic);
-    expect_serves_points(options, "any shape");
+    expect_serves_points(options, "as suits options");
 }
 
 TEST(PointsWithoutNormal, BesideEveryPartner) {

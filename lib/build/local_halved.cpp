@@ -1,0 +1,138 @@
+#include "build/local_halved.h"
+
+#include "build/compressed_budget.h"
+#include "build/local_draft.h"
+#include "compress/local/halved/fit.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace acdf::build {
+namespace {
+
+using compress::Goal;
+using compress::LocalHalvings;
+using compress::NormalBins;
+
+constexpr std::uint32_t kCountedAt = 8; // subdivisions of bins by which normals are counted
+constexpr std::uint64_t kFixed = 1500;  // bytes of a file beside bins and chunks of the tree, about
+constexpr double kBytesOfCell = 3.0;    // of a file, about
+
+class HalvedLocals {
+public:
+    HalvedLocals(const compress::Target& target, const Source& source, const LocalOptions& options)
+        : target_(target), source_(source), options_(options),
+          fitter_(target, bins_of(options, kCountedAt), options.mis) {}
+
+    Local of_budget(std::uint64_t budget, const Progress& progress) {
+        const auto build = [&](std::uint64_t bytes) { return of_bytes(bytes, progress); };
+        if (options_.codec == ACDF_CODEC_NONE) return build(budget);
+        try {
+            return fill_compressed(budget, build);
+        } catch (const OutOfReach& plain) { // compressed, the least may be small enough
+            Local made = build(plain.least);
+            if (made.bytes.size() > budget) throw OutOfReach(budget, made.bytes.size() + kSlack);
+            return made;
+        }
+    }
+
+    Local of_cells(std::uint64_t cells, const Progress& progress) {
+        const double bytes = kBytesOfCell * double(cells);
+        const NormalBins bins = bins_for(bytes);
+        compress::LocalHalvingsSize size = size_for(bins, bytes);
+        size.halvings = std::max<std::uint64_t>(cells, 1) - 1;
+        size.bytes = std::uint64_t{1} << 32;
+        return made(bins, size, progress);
+    }
+
+    Local of_variance(double variance, const Progress& progress) {
+        double share = 0.0;
+        const auto at = [&](double bytes) -> std::optional<Local> {
+            try {
+                return of_budget(static_cast<std::uint64_t>(bytes), [&](double, const char*) {
+                    if (progress) progress(share, "searching"); // no news, but a chance to cancel
+                });
+            } catch (const OutOfReach&) {
+                return std::nullopt;
+            }
+        };
+        return smallest_of_variance(variance, at, [&](double now) { share = now; });
+    }
+
+private:
+    NormalBins bins_for(double bytes) {
+        const double of_bin = sizeof(AcdfBin) + (options_.mis ? sizeof(AcdfPartnerRecord) : 0);
+        const compress::RowSize rows =
+            fitter_.rows_for(std::max(0.0, bytes - double{kFixed}), of_bin, options_.subdivisions);
+        code_bits_ = rows.code_bits;
+        return bins_as_many(options_, rows.subdivisions);
+    }
+
+    compress::LocalHalvingsSize size_for(const NormalBins& bins, double bytes) {
+        compress::LocalHalvingsSize size;
+        size.code_bits = code_bits_;
+        size.top = options_.tiles > 0 ? options_.tiles - 1 : fitter_.top_for(bytes, bins, code_bits_);
+        return size;
+    }
+
+    Local of_bytes(std::uint64_t bytes, const Progress& progress) {
+        const NormalBins bins = bins_for(double(bytes));
+        LocalHalvings nothing;
+        nothing.halvings.axes = {-1};
+        nothing.shares.assign(bins.normals.size(), 0.0f);
+        nothing.roots.assign(bins.normals.size(), ACDF_NO_ROOT);
+        if (options_.mis) nothing.records.resize(bins.normals.size(), {1.0f, 0.0f});
+        const std::uint64_t least = stored(nothing, bins).size();
+        if (least > bytes) throw OutOfReach(bytes, least);
+        const std::uint64_t room = bytes - least + 2 * ACDF_ALIGNMENT; // two chunks of a line each
+        compress::LocalHalvingsSize size = size_for(bins, double(room));
+        size.bytes = room;
+        return made(bins, size, progress);
+    }
+
+    compress::Description described(const LocalHalvings& fit, const NormalBins& bins) const {
+        compress::Description out = description_of(target_, source_, options_, bins, {});
+        out.shares = fit.shares;
+        out.chunks = {compress::normals_chunk(fit),
+                      compress::local_chunk(static_cast<float>(options_.cosine_share), {})};
+        if (options_.mis) out.chunks.push_back(partner_chunk(options_.mis, fit.records, bins));
+        return out;
+    }
+
+    std::vector<std::uint8_t> stored(const LocalHalvings& fit, const NormalBins& bins) const {
+        return compress::store(fit.halvings, fit.roots, described(fit, bins));
+    }
+
+    Local made(const NormalBins& bins, const compress::LocalHalvingsSize& size, const Progress& progress) {
+        const LocalHalvings fit = fitter_.fit(bins, size, [&](double share) {
+            if (progress) progress(0.8 * share, "fitting");
+        });
+        const Store store = [&](const compress::Description& description, AcdfCodec codec) {
+            return compress::store(fit.halvings, fit.roots, description, codec);
+        };
+        return finish(described(fit, bins), store, target_, source_, options_, bins);
+    }
+
+    const compress::Target& target_;
+    const Source& source_;
+    const LocalOptions& options_;
+    compress::LocalHalvingsFitter fitter_;
+    std::uint32_t code_bits_ = 7;
+};
+
+} // namespace
+
+Local build_halved(const compress::Target& target, const Source& source, const LocalOptions& options,
+                   const Progress& progress) {
+    HalvedLocals locals(target, source, options);
+    switch (options.goal.kind) {
+    case Goal::Kind::budget:
+        return locals.of_budget(options.goal.budget, progress);
+    case Goal::Kind::variance:
+        return locals.of_variance(options.goal.variance, progress);
+    default:
+        return locals.of_cells(options.goal.cells, progress);
+    }
+}
+
+} // namespace acdf::build

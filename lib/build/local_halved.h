@@ -1,0 +1,12 @@
+// Local environment files on one tree of halvings.
+#pragma once
+
+#include "build/local.h"
+
+namespace acdf::build {
+
+/// As build_local, of shape halvings.
+Local build_halved(const compress::Target& target, const Source& source, const LocalOptions& options,
+                   const Progress& progress);
+
+} // namespace acdf::build
