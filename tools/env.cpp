@@ -45,8 +45,7 @@ public:
     void check() override;
     std::vector<std::string*> files() override;
     std::string option_text() const override {
-        return maps_.any() ? build::option_text(maps_.options(input_, environment_.target, environment_.goal.budget,
-                                                              environment_.codec))
+        return maps_.any() ? builder::option_text(maps_.options(input_, environment_))
                            : builder::option_text(with_source());
     }
     std::uint64_t memory() const override;
@@ -234,8 +233,7 @@ std::uint64_t EnvConversion::memory() const {
 }
 
 Converted EnvConversion::convert(const Listener& listener) {
-    if (maps_.any())
-        return maps_.convert(input_, environment_.target, environment_.goal.budget, environment_.codec, listener);
+    if (maps_.any()) return maps_.convert(input_, environment_, listener);
     const ProbeTarget loaded = load_target(source, input_, environment_.target, listener.note);
     if (renderer_) scene_.note_axes(*command_, *renderer_, loaded.probe.source_map.layout, listener.note);
     if (for_partner_) listener.note(partner_text(*renderer_, environment_.mis));

@@ -1,13 +1,13 @@
 // Several maps in one file: what `acdf env --axis` does.
 #pragma once
 
-#include "build/indexed/environment.h"
 #include "tools/cli/conversion.h"
 
 #include <acdf/builder.h>
 
 #include <CLI/CLI.hpp>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -25,12 +25,11 @@ public:
 
     std::vector<std::string>& files() { return files_; }
     bool any() const { return !axes_.empty(); }
-    Converted convert(const input::ProbeOptions& reading, const builder::TargetOptions& target,
-                      std::uint64_t budget, AcdfCodec codec, const Listener& listener) const;
-    /// The options as the file stores them.
-    std::string text(const build::IndexedOptions& options) const { return build::option_text(options); }
-    build::IndexedOptions options(const input::ProbeOptions& reading, const builder::TargetOptions& target,
-                                  std::uint64_t budget, AcdfCodec codec) const;
+    /// Of those of an environment only target, budget and codec count.
+    builder::IndexedOptions options(const input::ProbeOptions& reading,
+                                    const builder::EnvironmentOptions& environment) const;
+    Converted convert(const input::ProbeOptions& reading, const builder::EnvironmentOptions& environment,
+                      const Listener& listener) const;
 
 private:
     void parse_axes();
@@ -38,8 +37,8 @@ private:
 
     std::vector<std::string> axis_texts_, sun_texts_;
     bool no_sun_ = false;
-    std::vector<build::MapAxis> axes_;
-    std::vector<build::SunDirection> suns_;
+    std::vector<builder::MapAxis> axes_;
+    std::vector<std::array<double, 3>> suns_;
     std::vector<std::string> files_;
 };
 

@@ -407,4 +407,5 @@ std::string option_text(const BrdfOptions& options) noexcept;
 
 } // namespace acdf::builder
 
+#include <acdf/maps.h>
 #include <acdf/rebuild.h>
