@@ -36,6 +36,8 @@ constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kPartnerMemory = 24 << 20
 constexpr std::uint64_t kSumsOfTexel = 16, kPartnerOfTexel = 28, kCurvesOfTexel = 8;
 // A tree while it is grown. A cell takes 9 bits of a file at least.
 constexpr std::uint64_t kMemoryOfCell = 110, kBitsOfCell = 9;
+// Of several maps: their texels and what is left of them without the sun, and the most that sums of all take.
+constexpr std::uint64_t kMapOfTexel = 8, kSumsOfMaps = 256 << 20;
 /// Cells that a variance takes of nearly all maps, times it.
 constexpr double kCellsOfVariance = 4000.0;
 
@@ -127,6 +129,7 @@ bool EnvConversion::takes_all(const std::vector<std::string>& sources) {
          {"--cells", "--target-variance", "--max-weight", "--fit", "--mis", "--scene", "--faces"})
         if (given(option)) throw CLI::ValidationError(option, "is for a file of one map, without --axis");
     maps_.take(sources);
+    source = maps_.files()[0];
     return true;
 }
 
@@ -224,6 +227,11 @@ std::uint64_t EnvConversion::most_cells(std::uint64_t texels) const {
 std::uint64_t EnvConversion::memory() const {
     const TargetMemory of = target_memory(source, input_, environment_.target);
     if (of.texels == 0) return 0;
+    if (maps_.any()) {
+        const std::uint64_t maps = maps_.count();
+        return kEnvironmentMemory + of.reading + (maps - 1) * of.target + maps * of.texels * kMapOfTexel +
+               std::min(maps * of.texels * kSumsOfTexel, kSumsOfMaps);
+    }
     const bool partner = environment_.mis.kind != ACDF_PARTNER_NONE;
     if (environment_.fit.fit != ACDF_FIT_VARIANCE)
         return kEnvironmentMemory + std::max(of.reading, of.target + of.texels * kCurvesOfTexel);

@@ -134,8 +134,9 @@ void sample_in_c(const void* bytes, std::size_t size, const acdf::File& file, Fu
     AcdfLocal local;
     AcdfBrdf brdf;
     AcdfTable table;
-    const int views =
-        acdf_environment(c, &environment) + acdf_local(c, &local) + acdf_brdf(c, &brdf) + acdf_table(c, &table);
+    AcdfIndexed indexed;
+    const int views = acdf_environment(c, &environment) + acdf_local(c, &local) + acdf_brdf(c, &brdf) +
+                      acdf_table(c, &table) + acdf_indexed(c, &indexed);
     require(views == 1);
     float v[3], wi[3];
     random.unit_vector(v, true);

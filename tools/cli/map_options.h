@@ -17,13 +17,14 @@ namespace acdf::tools {
 class MapOptions {
 public:
     void add(CLI::App& command);
-    /// Whether sources become one file: there are axes, or a source is a pattern such as sky.####.exr.
+    /// Whether sources become one file: there are axes, or a source is a sequence (tools/cli/sequence.h).
     bool given(const std::vector<std::string>& sources) const;
-    /// Takes the sources over. Patterns become the files that they stand for, and an axis `frame`. Throws
-    /// CLI::ValidationError where they do not fit the axes, and Failure where a pattern stands for no file.
+    /// Takes the sources over. Sequences become the files that they stand for, and an axis `frame`. Throws
+    /// CLI::ValidationError where they do not fit the axes, and Failure where a sequence has no files.
     void take(const std::vector<std::string>& sources);
 
     std::vector<std::string>& files() { return files_; }
+    std::size_t count() const { return files_.size(); }
     bool any() const { return !axes_.empty(); }
     /// Of those of an environment only target, budget and codec count.
     builder::IndexedOptions options(const input::ProbeOptions& reading,
@@ -33,7 +34,7 @@ public:
 
 private:
     void parse_axes();
-    void add_frames(const std::string& pattern);
+    void add_frames(const std::string& sequence);
 
     std::vector<std::string> axis_texts_, sun_texts_;
     bool no_sun_ = false;

@@ -170,7 +170,7 @@ IndexedEnvironmentFile build_indexed(const std::vector<SunMap>& maps, const Sour
         options.sun ? find_suns(maps, counts_of(options.axes), given.empty() ? nullptr : &given) : no_suns(maps);
     compress::Description description = description_of(maps, options);
     for (std::size_t i = 0; i < maps.size(); ++i)
-        suns.of_maps[i].share = static_cast<float>(maps[i].target->total / description.total);
+        suns.of_maps[i].share = compress::positive_float(maps[i].target->total / description.total);
     tell(0.1, "fitting");
     IndexedEnvironmentFile out;
     description.metadata = metadata_of(source, options, 0.0, 0.0);
