@@ -82,7 +82,7 @@ std::string brdf_samples(const acdf::BrdfView& view) {
 
 /// The same with coordinates of maps, of as many axes as there are: between maps, at one, and beyond.
 constexpr float kCoordinates[][3] = {{6, 1, 0},       {7.5f, 1.75f, 0}, {-0.25f, 2, 0},
-                                     {0.5f, 0.5f, 0}, {15, 2.375f, 0},  {30, 1.25f, 0}};
+                                     {0.5f, 0.5f, 0}, {15, 1.125f, 0},  {30, 1.25f, 0}};
 
 std::string indexed_samples(const acdf::IndexedEnvironment& view) {
     std::string text;
