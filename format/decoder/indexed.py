@@ -112,7 +112,8 @@ def before(coordinates, at):
     if at >= coordinates[-1]:
         return len(coordinates) - 2, 1.0
     i = max(i for i in range(len(coordinates)) if coordinates[i] <= at)
-    return i, (at - coordinates[i]) / (coordinates[i + 1] - coordinates[i])
+    half = 0.5 if math.isinf(coordinates[i + 1] - coordinates[i]) else 1.0
+    return i, (half * at - half * coordinates[i]) / (half * coordinates[i + 1] - half * coordinates[i])
 
 
 def between(a, b, t):

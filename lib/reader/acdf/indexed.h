@@ -101,6 +101,8 @@ ACDF_FN uint32_t acdf_index_before(const double* coordinates, uint32_t count, do
         else high = middle;
     }
     *between = (at - coordinates[low]) / (coordinates[low + 1u] - coordinates[low]);
+    if (!(coordinates[low + 1u] - coordinates[low] < 1.7976931348623157e308)) /* doubles hold halves of them */
+        *between = (0.5 * at - 0.5 * coordinates[low]) / (0.5 * coordinates[low + 1u] - 0.5 * coordinates[low]);
     return low;
 }
 
