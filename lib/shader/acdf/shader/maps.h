@@ -81,7 +81,7 @@ ACDF_FN4(AcdfShaderPlace, acdf_sky_place, ACDF_TABLES, tables, ACDF_U32, maps, A
     ACDF_LET(ACDF_F32, wide) = acdf_word_as_float(tables, coordinates + place.first + 1u) - low;
     place.between = ACDF_MIN((at - low) / wide, 1.0f);
     if (!(wide > 0.0f && wide < 3e38f)) {
-        place.between = 1.0f; /* floats do not tell them apart */
+        place.between = 1.0f; /* alike as floats, or farther apart than these reach */
     }
     return place;
 }
