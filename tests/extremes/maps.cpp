@@ -10,7 +10,7 @@
 
 namespace {
 
-using namespace acdf::builder;
+namespace builder = acdf::builder;
 
 struct ExtremeMaps {
     const char* what;
@@ -54,7 +54,7 @@ TEST(ExtremeMapsTest, AreMadeAndSampled) {
     };
     for (const ExtremeMaps& extreme : all) {
         std::vector<std::vector<float>> rgb;
-        std::vector<Pixels> maps;
+        std::vector<builder::Pixels> maps;
         for (std::size_t i = 0; i < extreme.light.size(); ++i) {
             rgb.emplace_back(std::size_t{3} * extreme.width * extreme.height, extreme.rest);
             const std::size_t lit = 3 * ((rgb[i].size() / 3) * (2 * i + 1) / (2 * extreme.light.size()));
@@ -65,19 +65,19 @@ TEST(ExtremeMapsTest, AreMadeAndSampled) {
             maps.back().data = map.data();
             maps.back().width = extreme.width, maps.back().height = extreme.height;
         }
-        IndexedOptions options;
+        builder::IndexedOptions options;
         options.axes = {{"at", extreme.coordinates}};
-        options.goal = Goal::of_budget(16 << 10);
+        options.goal = builder::Goal::of_budget(16 << 10);
         for (const AcdfFilter filter : {ACDF_FILTER_NEAREST, ACDF_FILTER_BILINEAR}) {
             options.target.filter = filter;
-            IndexedFile made;
-            const Status status = indexed(maps, options, made);
+            builder::IndexedFile made;
+            const builder::Status status = builder::indexed(maps, options, made);
             ASSERT_TRUE(status.ok()) << extreme.what << ": " << status.message;
             acdf::File file;
             const acdf::Status loaded = acdf::File::from_memory(made.bytes.data(), made.bytes.size(), file);
             ASSERT_TRUE(loaded.ok()) << extreme.what << ": " << loaded.message;
             expect_right(file.indexed(), extreme.coordinates, extreme.what);
-            for (const MapAccuracy& accuracy : made.accuracy)
+            for (const builder::MapAccuracy& accuracy : made.accuracy)
                 EXPECT_EQ(accuracy.support_violations, 0u) << extreme.what;
         }
     }
