@@ -80,6 +80,24 @@ std::string brdf_samples(const acdf::BrdfView& view) {
     return text;
 }
 
+/// The same with coordinates of maps, of as many axes as there are: between maps, at one, and beyond.
+constexpr float kCoordinates[][3] = {{6, 1, 0},       {7.5f, 1.75f, 0}, {-0.25f, 2, 0},
+                                     {0.5f, 0.5f, 0}, {15, 1.125f, 0},  {30, 1.25f, 0}};
+
+std::string indexed_samples(const acdf::IndexedEnvironment& view) {
+    std::string text;
+    for (const auto& t : kCoordinates)
+        for (const auto& [u0, u1] : random_numbers()) {
+            const acdf::DirectionSample s = view.at(double{t[0]}, double{t[1]}, double{t[2]}).sample(u0, u1);
+            char line[300];
+            std::snprintf(line, sizeof line, "%a %a %a  %a %a  %a %a %a  %a\n", double{t[0]}, double{t[1]},
+                          double{t[2]}, u0, u1, double{s.direction[0]}, double{s.direction[1]},
+                          double{s.direction[2]}, double{s.pdf});
+            text += line;
+        }
+    return text;
+}
+
 } // namespace
 
 std::string golden_samples(const std::string& name, const std::vector<std::uint8_t>& bytes) {
@@ -91,6 +109,7 @@ std::string golden_samples(const std::string& name, const std::vector<std::uint8
     if (file.kind() == ACDF_KIND_LOCAL && file.local().has_visibility()) return visibility_samples(file.local());
     if (file.kind() == ACDF_KIND_LOCAL) return local_samples(file.local());
     if (file.kind() == ACDF_KIND_BRDF) return brdf_samples(file.brdf());
+    if (file.kind() == ACDF_KIND_INDEXED) return indexed_samples(file.indexed());
     std::string text;
     for (const auto& [u0, u1] : random_numbers()) {
         const acdf::DirectionSample s = file.environment().sample(u0, u1);

@@ -9,9 +9,10 @@
 //   u0 u1  x y z  pdf
 //
 // in hexadecimal floating point (C99 %a), of a local environment with the normal before it (where it has visibility
-// cells with position and normal), of a BRDF with wo. None of the files is symmetric, so that a mirrored, turned or
-// transposed frame shows.
+// cells with position and normal), of a BRDF with wo, of several maps with three coordinates. None of the files is
+// symmetric, so that a mirrored, turned or transposed frame shows.
 #include "compress/fit/fit.h"
+#include "compress/indexed/fit.h"
 #include "compress/store/store.h"
 #include "golden_fast.h"
 #include "golden_samples.h"
@@ -190,6 +191,69 @@ Golden halvings(const char* name, const Description& description, std::uint32_t 
     HalvingsGrower grower(code_bits, least_depth, most_depth);
     const Halvings tree = grower.grown(description.axes[0].resolution, description.axes[1].resolution);
     return {name, store(tree, description, codec)};
+}
+
+/// Which halvings have codes of each map: those above a depth.
+std::vector<bool> halvings_above(const Halvings& tree, std::uint32_t depth) {
+    std::vector<bool> out;
+    std::vector<std::uint32_t> open = {0};
+    for (const std::int8_t axis : tree.axes) {
+        const std::uint32_t here = open.back();
+        open.pop_back();
+        if (axis < 0) continue;
+        out.push_back(here < depth);
+        open.insert(open.end(), 2, here + 1);
+    }
+    return out;
+}
+
+/// Maps of one tree along `axes`; the codes of the first map leave two halves dark.
+Golden indexed(const char* name, Description d, const std::vector<AxisDescription>& axes,
+               const std::vector<double>& coordinates, const std::vector<AcdfMap>& maps, std::uint32_t sun,
+               AcdfCodec codec) {
+    IndexedTree tree;
+    tree.halvings = HalvingsGrower(8, 3, 8).grown(d.axes[0].resolution, d.axes[1].resolution);
+    tree.has_codes = halvings_above(tree.halvings, 4);
+    tree.code_bits = sun > 0 ? 6 : 9;
+    const std::uint32_t most = (1u << tree.code_bits) - 1;
+    std::uint32_t splits = 0;
+    for (const bool own : tree.has_codes) splits += own;
+    for (std::uint32_t map = 0; map < maps.size(); ++map) {
+        std::vector<std::uint16_t> row;
+        for (std::uint32_t i = 0; i < splits; ++i)
+            row.push_back(static_cast<std::uint16_t>(most / 4 + (17 * map + 29 * i + 5 * map * i) % (most / 2)));
+        tree.rows.push_back(row);
+    }
+    tree.rows[0][splits - 1] = 0;
+    tree.rows[0][splits / 2] = static_cast<std::uint16_t>(most);
+    d.kind = ACDF_KIND_INDEXED;
+    d.total = 6.0;
+    d.axes.insert(d.axes.end(), axes.begin(), axes.end());
+    d.shares.assign(maps.size(), 0.0f);
+    d.chunks = {{ACDF_CHUNK_MAPS, maps_chunk(tree, coordinates, maps, sun)}};
+    return {name, store(tree.halvings, d, codec)};
+}
+
+/// Three hours of two hazes. The sun moves, is the same in both, hidden at the end, and not known once.
+Golden day() {
+    return indexed("indexed", environment_description(24, 14),
+                   {{"time", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 3, 6.0, 18.0},
+                    {"haze", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 2, 1.0, 2.5}},
+                   {6.0, 9.0, 18.0, 1.0, 2.5},
+                   {{0.125f, 0.5f, 0.25f, {0.6f, 0.0f, 0.8f}},
+                    {0.25f, 0.25f, 0.375f, {0.6f, 0.0f, 0.8f}},
+                    {0.125f, 0.75f, 0.125f, {0.0f, 0.6f, 0.8f}},
+                    {0.25f, 0.5f, 0.125f, {0.0f, 0.6f, 0.8f}},
+                    {0.125f, 0.0f, 0.0f, {0.0f, 0.0f, 0.0f}},
+                    {0.125f, 0.0f, 0.25f, {-0.8f, 0.6f, 0.0f}}},
+                   4, ACDF_CODEC_NONE);
+}
+
+/// Without suns, compressed, on the octahedral square.
+Golden frames() {
+    return indexed("indexed_octahedral", environment_description(16, 16, ACDF_PARAM_OCTAHEDRAL),
+                   {{"frame", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 2, -1.0, 1.0}}, {-1.0, 1.0},
+                   {{0.25f, 0.0f, 0.0f, {}}, {0.75f, 0.0f, 0.0f, {}}}, 0, ACDF_CODEC_ZLIB);
 }
 
 /// Codes of 12 bits: the first and the last, which leave a half dark, and those next to them.
@@ -450,6 +514,8 @@ int main(int argc, char** argv) try {
           dark_halvings(),
           even_halvings(),
           leaf_halvings(),
+          day(),
+          frames(),
           local("local", ACDF_PARAM_LATLONG),
           local("octahedral_local", ACDF_PARAM_OCTAHEDRAL),
           local_grid(),

@@ -157,6 +157,38 @@ std::string visibility_rows(const acdf::LocalEnvironmentView& view) {
     return text;
 }
 
+/// Of several maps: coordinates at a map, between, beyond, and not a number.
+std::string indexed_rows(const acdf::IndexedEnvironment& view) {
+    const AcdfIndexed& data = view.data();
+    std::string text = "call,";
+    for (std::uint32_t axis = 0; axis < data.axes; ++axis) text += "t" + std::to_string(axis) + ",";
+    text += "u0,u1,x,y,z,pdf\n";
+    Random random;
+    const auto numbers = random_numbers(40);
+    const auto all = directions(40);
+    for (std::size_t place = 0; place < 8; ++place) {
+        double at[ACDF_MOST_INDEXED_AXES] = {};
+        std::string given;
+        const double* of_axis = data.coordinates;
+        for (std::uint32_t axis = 0; axis < data.axes; of_axis += data.counts[axis++]) {
+            const double low = of_axis[0], high = of_axis[data.counts[axis] - 1];
+            at[axis] = place == 0 ? low : place == 1 ? of_axis[1] : low + (high - low) * random.next();
+            if (place == 2 && axis == 0) at[axis] = high + 1.0;
+            if (place == 3 && axis + 1 == data.axes) at[axis] = kNan;
+            given += (axis ? "," : "") + number(at[axis]);
+        }
+        const acdf::MixedEnvironment sky = view.at(at);
+        for (std::size_t i = 0; i < 16; ++i) {
+            const auto& [u0, u1] = numbers[(7 * place + i) % numbers.size()];
+            const Direction s = sky.sample(u0, u1);
+            text += row("sample", given, number(u0), number(u1), cells(s.direction), number(s.pdf));
+            const auto& d = all[(7 * place + i) % all.size()];
+            text += row("pdf", given, "", "", cells(d.data()), number(sky.pdf(d.data())));
+        }
+    }
+    return text;
+}
+
 // ---- tables ---------------------------------------------------------------------------------------------
 
 /// Two by two bins, one of them without energy, over three axes; a falling range, tilts, and a child on its
@@ -262,6 +294,8 @@ std::string rows_of(const acdf::File& file) {
         return conditional_rows(file.brdf(), kViews, "ox,oy,oz");
     case ACDF_KIND_TABLE:
         return table_rows(file.table());
+    case ACDF_KIND_INDEXED:
+        return indexed_rows(file.indexed());
     default:
         return environment_rows(file.environment());
     }

@@ -30,6 +30,7 @@ if(TARGET acdf_builder)
     install(FILES
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/accuracy.h
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/builder.h
+        ${PROJECT_SOURCE_DIR}/lib/build/acdf/maps.h
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/outcome.h
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/pixels.h
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/rebuild.h

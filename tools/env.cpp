@@ -36,6 +36,8 @@ constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kPartnerMemory = 24 << 20
 constexpr std::uint64_t kSumsOfTexel = 16, kPartnerOfTexel = 28, kCurvesOfTexel = 8;
 // A tree while it is grown. A cell takes 9 bits of a file at least.
 constexpr std::uint64_t kMemoryOfCell = 110, kBitsOfCell = 9;
+// Of several maps: their texels and what is left of them without the sun, and the most that sums of all take.
+constexpr std::uint64_t kMapOfTexel = 8, kSumsOfMaps = 256 << 20;
 /// Cells that a variance takes of nearly all maps, times it.
 constexpr double kCellsOfVariance = 4000.0;
 
@@ -45,8 +47,7 @@ public:
     void check() override;
     std::vector<std::string*> files() override;
     std::string option_text() const override {
-        return maps_.any() ? build::option_text(maps_.options(input_, environment_.target, environment_.goal.budget,
-                                                              environment_.codec))
+        return maps_.any() ? builder::option_text(maps_.options(input_, environment_))
                            : builder::option_text(with_source());
     }
     std::uint64_t memory() const override;
@@ -128,6 +129,7 @@ bool EnvConversion::takes_all(const std::vector<std::string>& sources) {
          {"--cells", "--target-variance", "--max-weight", "--fit", "--mis", "--scene", "--faces"})
         if (given(option)) throw CLI::ValidationError(option, "is for a file of one map, without --axis");
     maps_.take(sources);
+    source = maps_.files()[0];
     return true;
 }
 
@@ -225,6 +227,11 @@ std::uint64_t EnvConversion::most_cells(std::uint64_t texels) const {
 std::uint64_t EnvConversion::memory() const {
     const TargetMemory of = target_memory(source, input_, environment_.target);
     if (of.texels == 0) return 0;
+    if (maps_.any()) {
+        const std::uint64_t maps = maps_.count();
+        return kEnvironmentMemory + of.reading + (maps - 1) * of.target + maps * of.texels * kMapOfTexel +
+               std::min(maps * of.texels * kSumsOfTexel, kSumsOfMaps);
+    }
     const bool partner = environment_.mis.kind != ACDF_PARTNER_NONE;
     if (environment_.fit.fit != ACDF_FIT_VARIANCE)
         return kEnvironmentMemory + std::max(of.reading, of.target + of.texels * kCurvesOfTexel);
@@ -234,8 +241,7 @@ std::uint64_t EnvConversion::memory() const {
 }
 
 Converted EnvConversion::convert(const Listener& listener) {
-    if (maps_.any())
-        return maps_.convert(input_, environment_.target, environment_.goal.budget, environment_.codec, listener);
+    if (maps_.any()) return maps_.convert(input_, environment_, listener);
     const ProbeTarget loaded = load_target(source, input_, environment_.target, listener.note);
     if (renderer_) scene_.note_axes(*command_, *renderer_, loaded.probe.source_map.layout, listener.note);
     if (for_partner_) listener.note(partner_text(*renderer_, environment_.mis));

@@ -1,7 +1,8 @@
-// acdf export: samples and pdfs of an environment, a local environment or a BRDF for shaders: functions in
-// their languages, and tables.
+// acdf export: samples and pdfs of an environment, of several maps, of a local environment or a BRDF for shaders:
+// functions in their languages, and tables.
 #include "shader/texts.h"
 #include "tools/cli/choice.h"
+#include "tools/cli/coordinates.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
@@ -52,6 +53,11 @@ std::string c_text(const ShaderTables& tables, bool with_words) {
            rows_of_words(tables, "0x%08Xu", "    ") + "};\n#endif\n";
 }
 
+/// Those of several maps, in the order of acdf_sky.
+std::vector<std::string> sky_axes(const File& file) {
+    return file.kind() == ACDF_KIND_INDEXED ? indexed_axes(file) : std::vector<std::string>();
+}
+
 /// What a program needs to make a buffer or a texture of the tables, and to check that they are the file's.
 std::string description(const ExportArguments& options, const LoadedFile& loaded, const ShaderTables& tables) {
     const std::size_t rows = (tables.size() + texture_width - 1) / texture_width;
@@ -62,6 +68,7 @@ std::string description(const ExportArguments& options, const LoadedFile& loaded
                                    {"texture", {{"format", "r32ui"}, {"width", texture_width}, {"height", rows}}}};
     json["resolution"] = {loaded.file.axis(0).resolution, loaded.file.axis(1).resolution};
     json["total"] = loaded.file.description().total;
+    for (const std::string& axis : sky_axes(loaded.file)) json["axes"].push_back(axis);
     if (loaded.file.kind() == ACDF_KIND_ENVIRONMENT)
         json["recommended_light_share"] = loaded.file.environment().recommended_light_share();
     json["requires_mis"] = loaded.file.partner() != nullptr;
@@ -128,8 +135,9 @@ void add_export(CLI::App& program, int& exit_code) {
                                          {"wgsl", Target::wgsl},
                                          {"json", Target::json}};
     auto options = std::make_shared<ExportArguments>();
-    CLI::App* command = program.add_subcommand("export", "Write an environment, a local environment or a BRDF for "
-                                                         "shaders: functions that sample and evaluate, and tables");
+    CLI::App* command = program.add_subcommand("export", "Write an environment (also of several maps), a local "
+                                                         "environment or a BRDF for shaders: functions that "
+                                                         "sample and evaluate, and tables");
     command
         ->add_option("FILE", options->file,
                      "The .acdf file of an environment, a local environment or a BRDF (- is stdin)")

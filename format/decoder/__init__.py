@@ -15,7 +15,7 @@ from .kinds import view_of
 
 
 def load(data):
-    """The view of a file's bytes: Environment, Local, Brdf or Table. Raises Refused, with the number of a rule."""
+    """The view of a file's bytes: Environment, Local, Brdf, Table or Indexed. Raises Refused, with the number of a rule."""
     container = read_container(data)
     description = read_description(container)
     return view_of(container, description)

@@ -5,6 +5,18 @@ import struct
 from .description import check_sphere_axes
 from .halvings import STEPS, Bits, Halvings, share, words
 from .refused import require
+from .sphere import PI, clamp, direction_of, of_unit_length, pdf32, random_number, sin_cos
+from .square import grid_of
+
+WEIGHTS = 1 << 21
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3] for i in range(3)]
 
 
 class Map:
@@ -88,15 +100,143 @@ class Indexed:
         lower = max(node_steps * share(code, self.code_bits) >> 31, 1)
         return lower if lower < node_steps else node_steps - 1
 
-    def probability(self, number, square):
-        """Of one map: of the cell that holds a square, in the part that the cone leaves to the tree."""
-        node, here = self.tree.root, STEPS
+    def at(self, coordinates):
+        """§15.2: the environment at coordinates."""
+        return Mixed(self, coordinates)
+
+
+def before(coordinates, at):
+    """The map before a coordinate, and how far it lies from there to the next."""
+    if not at > coordinates[0]:
+        return 0, 0.0
+    if at >= coordinates[-1]:
+        return len(coordinates) - 2, 1.0
+    i = max(i for i in range(len(coordinates)) if coordinates[i] <= at)
+    half = 0.5 if math.isinf(coordinates[i + 1] - coordinates[i]) else 1.0
+    return i, (half * at - half * coordinates[i]) / (half * coordinates[i + 1] - half * coordinates[i])
+
+
+def between(a, b, t):
+    """On the great circle."""
+    known_a, known_b = any(a), any(b)
+    if not (known_a and known_b):
+        return a if known_a else b
+    angle = math.atan2(math.sqrt(dot(cross(a, b), cross(a, b))), dot(a, b))
+    if angle < 1e-9:
+        return a
+    out = [math.sin((1 - t) * angle) * x + math.sin(t * angle) * y for x, y in zip(a, b)]
+    length = math.sqrt(dot(out, out))
+    return [x / length for x in out]
+
+
+class Mixed:
+    def __init__(self, file, coordinates):
+        self.file, self.grid = file, grid_of(file.d)
+        numbers, weights, places = [0], [1.0], []
+        for axis, at in zip(file.coordinates, coordinates):
+            i, t = before(axis, at)
+            numbers = [n * len(axis) + i + upper for n in numbers for upper in (0, 1)]
+            weights = [w * (t if upper else 1 - t) for w in weights for upper in (0, 1)]
+            places.append(t)
+        maps = [file.maps[n] for n in numbers]
+        light = sum(w * each.share for w, each in zip(weights, maps))
+        self.sun_share = sum(w * each.share * each.sun_share for w, each in zip(weights, maps)) / light
+        self.total = light * file.d.total
+        rest = [(n, w * each.share * (1 - each.sun_share)) for n, w, each in zip(numbers, weights, maps)]
+        self.weights = self.whole([(n, v) for n, v in rest if v > 0])
+        suns = [(each.sun, each.radius) for each in maps]
+        for t in reversed(places):
+            suns = [(between(a[0], b[0], t), a[1] + (b[1] - a[1]) * t if a[1] > 0 and b[1] > 0 else max(a[1], b[1]))
+                    for a, b in zip(suns[::2], suns[1::2])]
+        self.sun, radius = suns[0]
+        self.reach = 2 * math.sin(radius / 2) ** 2
+
+    @staticmethod
+    def whole(weights):
+        total = sum(v for _, v in weights)
+        out = [max(math.floor(v / total * WEIGHTS + 0.5), 1) for _, v in weights]
+        most = max(range(len(out)), key=lambda i: (weights[i][1], -i))
+        out[most] += WEIGHTS - sum(out)
+        return [(n, v) for (n, _), v in zip(weights, out)]
+
+    def cone(self, x):
+        """Step 6."""
+        if self.sun_share == 0 or x >= 1:
+            return 0.0
+        k = 1 << (self.file.sun - 1)
+        return k * (1 - x) ** (k - 1) / (2 * PI * self.reach)
+
+    def place_in_cone(self, v):
+        length = math.sqrt(dot(v, v))
+        if self.sun_share == 0:
+            return 1.0
+        return sum((x / length - y) ** 2 for x, y in zip(v, self.sun)) / 2 / self.reach
+
+    def descend(self, upper):
+        """To a tile: the node, and c. `upper` is called with a split, L and c."""
+        node, steps = self.file.tree.root, {n: STEPS for n, _ in self.weights}
+        c = WEIGHTS * STEPS
         while node.number is not None:
-            lower = self.steps(node.number, self.codes[number], here)
-            upper = square[node.axis] >= node.halves[1].box[node.axis][0]
-            here = here - lower if upper else lower
-            node = node.halves[upper]
-        tile = node.probability()
-        while node.halves:
-            node = node.halves[square[node.axis] >= node.halves[1].box[node.axis][0]]
-        return here / STEPS * (node.probability() / tile if tile > 0 else 1.0)
+            lower = {n: self.file.steps(node.number, self.file.codes[n], steps[n]) for n in steps}
+            low = sum(v * lower[n] for n, v in self.weights)
+            half = upper(node, low, c)
+            steps = {n: steps[n] - lower[n] if half else lower[n] for n in steps}
+            c = c - low if half else low
+            node = node.halves[half]
+        return node, c
+
+    @staticmethod
+    def probability(tile, c, cell):
+        return c / 2.0**52 * (1.0 if cell is tile else cell.probability() / tile.probability())
+
+    def pdf(self, direction):
+        v = direction_of(direction)
+        if not of_unit_length(v):
+            return 0.0
+        column, square = self.grid.grid(v)
+        is_upper = lambda node: square[node.axis] >= node.halves[1].box[node.axis][0]
+        tile, c = self.descend(lambda node, low, c: is_upper(node))
+        cell = tile
+        while cell.halves:
+            cell = cell.halves[is_upper(cell)]
+        t = self.grid.fractions(v, column, cell.box)
+        tree = self.grid.density(cell.box, [0.0, 0.0], t, self.probability(tile, c, cell))
+        pdf = self.sun_share * self.cone(self.place_in_cone(v)) + (1 - self.sun_share) * tree
+        return pdf32(pdf) if pdf > 0 else 0.0
+
+    def is_in_cone(self, u1):
+        return random_number(u1) < self.sun_share
+
+    def sample(self, u0, u1):
+        u = [random_number(u0), random_number(u1)]
+        direction = self.sample_cone(u) if u[1] < self.sun_share else self.sample_tree(u)
+        return (*direction, self.pdf(direction))
+
+    def sample_cone(self, u):
+        x = 1 - (1 - u[1] / self.sun_share) ** (1 / (1 << (self.file.sun - 1)))
+        away = x * self.reach
+        sine, cosine = sin_cos(2 * u[0])
+        side = cross(self.sun, [0.0, 0.0, 1.0] if abs(self.sun[2]) < 0.9 else [1.0, 0.0, 0.0])
+        length = math.sqrt(dot(side, side))
+        side = [y / length for y in side]
+        other, r = cross(self.sun, side), math.sqrt(away * (2 - away))
+        return [(1 - away) * s + r * (cosine * a + sine * b) for s, a, b in zip(self.sun, side, other)]
+
+    def sample_tree(self, u):
+        u[1] = min((u[1] - self.sun_share) / (1 - self.sun_share), 1.0)
+
+        def upper(node, low, c):
+            y = u[node.axis] * c
+            half = y >= low and low < c
+            u[node.axis] = (y - low) / (c - low) if half else y / low
+            return half
+
+        tile, _ = self.descend(upper)
+        step = [low + min(math.floor(v * (high - low)), high - low - 1) for v, (low, high) in zip(u, tile.steps)]
+        cell = tile
+        while cell.halves:
+            cell = cell.halves[step[cell.axis] >= cell.halves[1].steps[cell.axis][0]]
+        for a, ((low, high), (first, last)) in enumerate(zip(tile.steps, cell.steps)):
+            if cell is not tile:
+                u[a] = clamp((u[a] * (high - low) - (first - low)) / (last - first), 0.0, 1.0)
+        return self.grid.place(cell.box, u, [0.0, 0.0], 1.0)[:3]

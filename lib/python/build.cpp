@@ -131,6 +131,21 @@ py::bytes build_environment(const py::object& image, const py::dict& given) {
     });
 }
 
+py::bytes build_indexed(const std::vector<py::object>& images, const py::dict& given) {
+    const Options options(given);
+    std::vector<Numbers> held;
+    std::vector<Pixels> maps;
+    for (const py::object& image : images) {
+        held.push_back(number_array(image, "maps"));
+        maps.push_back(pixels_of(held.back(), options));
+    }
+    const IndexedOptions what = indexed_options(options);
+    Raised raised;
+    return built<IndexedFile>(options, raised, [&](IndexedFile& result, const Control& control) {
+        return indexed(maps, what, result, control);
+    });
+}
+
 py::bytes build_local(const py::object& image, const py::dict& given) {
     const Options options(given);
     const Numbers held = number_array(image, "image");
@@ -257,6 +272,7 @@ void add_build(py::module_& module) {
         .def("rebuild", &Rebuilder::rebuild)
         .def("relative_variance", &Rebuilder::relative_variance);
     module.def("build_environment", &build_environment);
+    module.def("build_indexed", &build_indexed);
     module.def("build_local", &build_local);
     module.def("build_brdf", &build_brdf);
     module.def("build_table", &build_table);

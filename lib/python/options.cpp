@@ -186,6 +186,20 @@ BrdfOptions brdf_options(const Options& options) {
     return out;
 }
 
+IndexedOptions indexed_options(const Options& options) {
+    IndexedOptions out;
+    out.target = target_options(options);
+    out.goal = goal_of(options, out.goal);
+    std::vector<std::pair<std::string, std::vector<double>>> axes;
+    options.take("axes", axes);
+    for (auto& [name, coordinates] : axes) out.axes.push_back({std::move(name), std::move(coordinates)});
+    options.take("sun", out.sun);
+    options.take("suns", out.suns);
+    out.codec = codec_of(options);
+    out.source = source_of(options);
+    return out;
+}
+
 TableOptions table_options(const Options& options) {
     TableOptions out;
     options.take("indexed", out.indexed);

@@ -65,6 +65,7 @@ builder::EnvironmentOptions environment_options(const Options& options);
 builder::LocalOptions local_options(const Options& options);
 builder::BrdfOptions brdf_options(const Options& options);
 builder::TableOptions table_options(const Options& options);
+builder::IndexedOptions indexed_options(const Options& options);
 
 /// Adds functions that build to the module.
 void add_build(py::module_& module);

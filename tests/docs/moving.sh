@@ -37,6 +37,9 @@ tail -n +2 samples.csv | cut -d, -f6 | cmp - pdfs
 "$acdf" plot day.acdf -o day.png --at time=10,turbidity=3 --width 64 --quiet
 [ -s day.png ]
 
+"$acdf" export day.acdf --target glsl --tables day.bin >day.glsl
+grep -q "AcdfShaderSky acdf_sky(vec3 at)" day.glsl
+
 # A sequence has the axis frame. It is the same file as by its names.
 for frame in 7 8 9; do "$clear_sky" 64 $frame 3 day.000$frame.pfm; done
 "$acdf" env "day.####.pfm" -o frames.acdf --budget 16KiB --quiet
@@ -56,7 +59,6 @@ refused() {
 expected=1 refused measure day.acdf --against between.pfm
 expected=1 refused sample day.acdf -n 1 --at time=10
 expected=1 refused pdf day.acdf --at time=10,hour=3 samples.csv
-expected=1 refused export day.acdf --target glsl
 expected=1 refused env "no.####.exr" -o none.acdf
 expected=2 refused env "${maps[@]}" -o none.acdf --axis time=7,9,11
 expected=2 refused env day.0007.pfm day.0008.pfm --axis time=7,8

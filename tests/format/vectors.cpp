@@ -90,6 +90,12 @@ void check_place(const Row& row, const acdf::LocalEnvironmentView& view) {
         [&](const float* d) { return view.pdf(point, d); });
 }
 
+void check_maps(const Row& row, const acdf::IndexedEnvironment& view) {
+    const acdf::MixedEnvironment sky = view.at(numbered(row, "t").data());
+    check_direction(
+        row, [&](double u0, double u1) { return sky.sample(u0, u1); }, [&](const float* d) { return sky.pdf(d); });
+}
+
 void check_table(const Row& row, const acdf::TableView& view) {
     std::vector<std::uint32_t> index;
     for (const double i : numbered(row, "i")) index.push_back(static_cast<std::uint32_t>(i));
@@ -112,6 +118,8 @@ void check_row(const Row& row, const acdf::File& file) {
         return check_conditional(row, file.brdf(), "o");
     case ACDF_KIND_TABLE:
         return check_table(row, file.table());
+    case ACDF_KIND_INDEXED:
+        return check_maps(row, file.indexed());
     default:
         return check_direction(
             row, [&](double u0, double u1) { return file.environment().sample(u0, u1); },
@@ -140,7 +148,7 @@ TEST(Vectors, areWhatTheReaderGives) {
         }
     }
     EXPECT_GT(rows, 1800u);
-    EXPECT_EQ(kinds.size(), 4u);
+    EXPECT_EQ(kinds.size(), 5u);
 }
 
 /// No golden file goes without vectors.

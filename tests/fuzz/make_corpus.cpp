@@ -1,6 +1,7 @@
 // Writes the seeds of fuzz_reader, small valid files that use everything, to FOLDER/fuzz_reader: make_corpus FOLDER
 // (Those of the other fuzzers are in seeds/.)
 #include "tests/lib/reader/brdf_builder.h"
+#include "tests/lib/reader/indexed_builder.h"
 #include "tests/lib/reader/local_fast_random.h"
 #include "tests/lib/reader/normals_builder.h"
 #include "tests/lib/reader/planes.h"
@@ -43,6 +44,10 @@ int main(int argc, char** argv) {
     complete.zlib = true;
     write(folder / "compressed", complete.encode());
     write(folder / "planes", as_planes(preorder_environment()).encode());
+    IndexedSpec maps;
+    write(folder / "indexed", maps.encode());
+    maps.octahedral = maps.zlib = true;
+    write(folder / "indexed_octahedral", maps.encode());
     EnvironmentSpec leaf;
     leaf.halvings.nodes = {{}};
     write(folder / "halvings", leaf.encode());

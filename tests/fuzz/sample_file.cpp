@@ -134,8 +134,9 @@ void sample_in_c(const void* bytes, std::size_t size, const acdf::File& file, Fu
     AcdfLocal local;
     AcdfBrdf brdf;
     AcdfTable table;
-    const int views =
-        acdf_environment(c, &environment) + acdf_local(c, &local) + acdf_brdf(c, &brdf) + acdf_table(c, &table);
+    AcdfIndexed indexed;
+    const int views = acdf_environment(c, &environment) + acdf_local(c, &local) + acdf_brdf(c, &brdf) +
+                      acdf_table(c, &table) + acdf_indexed(c, &indexed);
     require(views == 1);
     float v[3], wi[3];
     random.unit_vector(v, true);
@@ -165,6 +166,23 @@ void sample_brdf_walk(const acdf::ShaderTables& tables, bool brdf, FuzzRandom& r
     }
 }
 
+/// What is made for several maps answers as them; the words of any other file say that there are none.
+void sample_sky_walk(const acdf::ShaderTables& tables, bool maps, FuzzRandom& random) {
+    const std::uint32_t* words = tables.words();
+    for (int n = 0; n < samples_a_file; ++n) {
+        float at[3], any[3];
+        random.any_vector(at);
+        random.any_vector(any);
+        const AcdfShaderSky sky = acdf_sky_at(words, at[0], at[1], at[2]);
+        const auto n0 = static_cast<std::uint32_t>(random.next()), n1 = static_cast<std::uint32_t>(random.next());
+        const AcdfWalkSample s = acdf_sky_sample(words, sky, n0, n1);
+        require(std::isfinite(s.pdf) && s.pdf >= 0.0f && (maps || s.pdf == 0.0f));
+        require(std::isfinite(acdf_sky_pdf(words, sky, any[0], any[1], any[2])));
+        const float d[3] = {s.x, s.y, s.z};
+        if (s.pdf > 0.0f) require(is_unit(d) && acdf_sky_pdf(words, sky, s.x, s.y, s.z) == s.pdf);
+    }
+}
+
 /// As shaders do, of whatever files have tables for them.
 void sample_walk(const acdf::File& file, FuzzRandom& random) {
     acdf::ShaderTables tables;
@@ -184,6 +202,7 @@ void sample_walk(const acdf::File& file, FuzzRandom& random) {
         require(is_unit(d) && acdf_walk_pdf(words, point, s.x, s.y, s.z) == s.pdf);
     }
     sample_brdf_walk(tables, file.kind() == ACDF_KIND_BRDF, random);
+    sample_sky_walk(tables, file.kind() == ACDF_KIND_INDEXED, random);
 }
 
 void sample_everything(const acdf::IndexedEnvironment& maps, FuzzRandom& random) {

@@ -29,34 +29,49 @@ double relative(double a, double b) { return a == b ? 0.0 : std::fabs(a - b) / s
 class Reader {
 public:
     explicit Reader(const acdf::File& file) : file_(file) {}
-    /// A normal, or of a BRDF a direction of view.
+    /// A normal, or of a BRDF a direction of view, of several maps coordinates.
     void at(const float given[3]) {
         if (file_.kind() == ACDF_KIND_LOCAL) point_ = file_.local().at(given);
+        if (maps()) sky_ = file_.indexed().at(double{given[0]}, double{given[1]}, double{given[2]});
         std::copy_n(given, 3, wo_);
     }
     acdf::DirectionSample sample(double u0, double u1) const {
         if (brdf()) return file_.brdf().sample(wo_, u0, u1);
+        if (maps()) return sky_.sample(u0, u1);
         return file_.kind() == ACDF_KIND_LOCAL ? file_.local().sample(point_, u0, u1)
                                                : file_.environment().sample(u0, u1);
     }
     float pdf(const float d[3]) const {
         if (brdf()) return file_.brdf().pdf(wo_, d);
+        if (maps()) return sky_.pdf(d);
         return file_.kind() == ACDF_KIND_LOCAL ? file_.local().pdf(point_, d) : file_.environment().pdf(d);
     }
 
     /// Of a pdf: what floats round.
     double near(const float d[3]) const {
         if (file_.fast().grid) return kNearOnGrids;
+        if (maps()) return kNear + cone_moves(d);
         return brdf() ? Halves(wo_, d).rounded() : kNear;
     }
     /// Beyond this it is another cell's.
-    double same(const float d[3]) const { return brdf() ? kSame + Halves(wo_, d).moved() : kSame; }
+    double same(const float d[3]) const {
+        return brdf() ? kSame + Halves(wo_, d).moved() : maps() ? kSame + cone_moves(d) : kSame;
+    }
 
 private:
     bool brdf() const { return file_.kind() == ACDF_KIND_BRDF; }
+    bool maps() const { return file_.kind() == ACDF_KIND_INDEXED; }
+    /// Of the pdf: what a step of 2^-20 changes where the cone of the sun falls steeply.
+    double cone_moves(const float d[3]) const {
+        const AcdfCone& cone = sky_.data().cone;
+        const double pdf = double{sky_.pdf(d)};
+        if (!(cone.reach > 0.0) || !(pdf > 0.0)) return 0.0;
+        return sky_.sun_share() * cone.peak / pdf * 0x1p-20 * 8.0 / std::sqrt(cone.reach);
+    }
 
     const acdf::File& file_;
     AcdfLocalPoint point_ = {};
+    acdf::MixedEnvironment sky_;
     float wo_[3] = {};
 };
 

@@ -24,7 +24,17 @@ namespace {
 
 using namespace acdf_test;
 
-// Normals, which of a BRDF are views: above the surface.
+// From the first coordinate of each axis to the last, and a little beyond.
+void write_coordinates(const acdf::File& file, std::mt19937& random, float* out) {
+    const AcdfIndexed data = file.indexed().data();
+    const double* of_axis = data.coordinates;
+    for (std::uint32_t axis = 0; axis < data.axes; of_axis += data.counts[axis++]) {
+        const double low = of_axis[0], wide = of_axis[data.counts[axis] - 1] - low;
+        out[axis] = static_cast<float>(low + wide * (static_cast<double>(random()) * 0x1p-32 * 1.1 - 0.05));
+    }
+}
+
+// Normals, which of a BRDF are views: above the surface; of several maps coordinates.
 void write_inputs(const acdf::File& file, std::size_t count, const std::string& folder) {
     std::mt19937 random(7);
     std::vector<std::uint32_t> words;
@@ -43,6 +53,7 @@ void write_inputs(const acdf::File& file, std::size_t count, const std::string& 
     for (std::size_t i = 0; i < count; ++i) {
         add_direction(normals);
         if (file.kind() == ACDF_KIND_BRDF) normals[4 * i + 2] = std::max(std::fabs(normals[4 * i + 2]), 1e-6f);
+        if (file.kind() == ACDF_KIND_INDEXED) write_coordinates(file, random, &normals[4 * i]);
     }
     write_all(folder + "/words.bin", words);
     write_all(folder + "/directions.bin", directions);

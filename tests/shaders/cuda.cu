@@ -1,5 +1,5 @@
 // The exported C on a CUDA device: answers to words.bin, directions.bin and normals.bin in FOLDER, as opencl.c
-// gives them. Of BRDFs compiled with -DBRDF.
+// gives them. Of BRDFs compiled with -DBRDF, of several maps with -DMAPS.
 #include "exported.h"
 
 #include <cstdio>
@@ -13,6 +13,10 @@
 #define AT acdf_view(tables, normals[i].x, normals[i].y, normals[i].z),
 #define acdf_sample acdf_sample_brdf
 #define acdf_pdf acdf_pdf_brdf
+#elif defined(MAPS)
+#define AT acdf_sky(tables, normals[i].x, normals[i].y, normals[i].z),
+#define acdf_sample acdf_sample_sky
+#define acdf_pdf acdf_pdf_sky
 #else
 #define AT acdf_at(tables, normals[i].x, normals[i].y, normals[i].z),
 #endif

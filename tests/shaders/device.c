@@ -1,5 +1,5 @@
-/* The exported C on this processor: answers to words.bin, directions.bin and normals.bin (BRDF: which are views) in
- * FOLDER. TABLES_FILE: by tables.bin, else by those in the header. */
+/* The exported C on this processor: answers to words.bin, directions.bin and normals.bin (BRDF: which are views;
+ * MAPS: coordinates) in FOLDER. TABLES_FILE: by tables.bin, else by those in the header. */
 #include "exported.h"
 
 #ifdef BRDF
@@ -7,6 +7,11 @@
 #define POINT AcdfShaderView
 #define SAMPLE acdf_sample_brdf
 #define PDF acdf_pdf_brdf
+#elif defined(MAPS)
+#define AT acdf_sky
+#define POINT AcdfShaderSky
+#define SAMPLE acdf_sample_sky
+#define PDF acdf_pdf_sky
 #else
 #define AT acdf_at
 #define POINT AcdfShaderPoint

@@ -16,6 +16,11 @@
 #define acdf_sample acdf_sample_brdf
 #define acdf_sample_float acdf_sample_brdf_float
 #define acdf_pdf acdf_pdf_brdf
+#elif defined(MAPS)
+#define AT acdf_sky(tables, directions[3], directions[4], directions[5]),
+#define acdf_sample acdf_sample_sky
+#define acdf_sample_float acdf_sample_sky_float
+#define acdf_pdf acdf_pdf_sky
 #else
 #define AT acdf_at(tables, directions[3], directions[4], directions[5]),
 #endif

@@ -1,5 +1,6 @@
 /* The exported C as OpenCL: answers to words.bin, directions.bin and normals.bin in FOLDER by the first device
- * there is. A second argument "brdf": those of a BRDF, whose normals are views. */
+ * there is. A second argument "BRDF": those of a BRDF, whose normals are views; "MAPS": those of several maps, whose
+ * normals are coordinates. */
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
@@ -12,6 +13,10 @@ static const char kernel_source[] =
     "#define AT acdf_view(tables, normals[i].x, normals[i].y, normals[i].z),\n"
     "#define acdf_sample acdf_sample_brdf\n"
     "#define acdf_pdf acdf_pdf_brdf\n"
+    "#elif defined(MAPS)\n"
+    "#define AT acdf_sky(tables, normals[i].x, normals[i].y, normals[i].z),\n"
+    "#define acdf_sample acdf_sample_sky\n"
+    "#define acdf_pdf acdf_pdf_sky\n"
     "#else\n"
     "#define AT acdf_at(tables, normals[i].x, normals[i].y, normals[i].z),\n"
     "#endif\n"
@@ -75,7 +80,7 @@ int main(int argc, char** argv) {
     cl_mem buffers[6];
     cl_uint i;
     cl_int error;
-    if (argc > 2) strcat(options, " -DBRDF");
+    if (argc > 2) strcat(strcat(options, " -D"), argv[2]);
     if (clGetPlatformIDs(1, &platform, NULL) != CL_SUCCESS ||
         clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, NULL) != CL_SUCCESS) {
         fprintf(stderr, "skipped: there is no OpenCL device (pocl-opencl-icd makes one of the processor)\n");

@@ -2,13 +2,16 @@
 # run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT [FORM]: exports a file, samples and evaluates COUNT times on a device, and compares
 # with the reader. DEVICE: c, opencl, cuda, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only
 # compile. FORM: environment, on a lat-long grid; environment_square, on the octahedral one; local and local_square, the same
-# of the fast shape (local_fast, local_fast_square); brdf and brdf_anisotropic. PROBE, BRDF, BUDGET and FLOOR in the environment
+# of the fast shape (local_fast, local_fast_square); brdf and brdf_anisotropic; maps. PROBE, BRDF, BUDGET and FLOOR in the environment
 # name another source than that of tests, the size of the file, and the share of a BRDF that follows the cosine. MADE names a
 # folder for files that several devices take: DEVICE "file" puts one there, others take it if there is one.
 set -euo pipefail
 device=$1 acdf=$2 compare=$3 make_sky=$4 count=$5 form=${6:-environment}
-brdf=
-case $form in brdf*) brdf=brdf ;; esac
+brdf= of= define=
+case $form in
+brdf*) brdf=brdf of=_brdf define=BRDF ;;
+maps) of=_sky define=MAPS ;;
+esac
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -32,6 +35,20 @@ make_file() {
         "$compare" inputs "$work/sky.acdf" "$count" "$work"
         return
     fi
+    if [ "$form" = maps ]; then
+        local root maps=()
+        root=$(cd "$here/../.." && pwd)
+        "${CXX:-c++}" -std=c++17 -O1 -I"$root" "$root/docs/examples/clear_sky/acdf_clear_sky.cpp" -o "$work/clear_sky"
+        for hour in 7 8 9; do
+            for turbidity in 2 4; do
+                "$work/clear_sky" 128 $hour $turbidity "$work/$hour-$turbidity.pfm"
+                maps+=("$work/$hour-$turbidity.pfm")
+            done
+        done
+        "$acdf" env "${maps[@]}" --axis time=7,8,9 --axis turbidity=2,4 --budget "${BUDGET:-16KiB}" -o "$work/sky.acdf" --quiet
+        "$compare" inputs "$work/sky.acdf" "$count" "$work"
+        return
+    fi
     [ -n "${PROBE-}" ] || "$make_sky" "$probe"
     case $form in *square) domain=octahedral ;; esac
     case $form in
@@ -45,7 +62,7 @@ make_file() {
 # export TARGET -o FILE ...
 export_sky() { "$acdf" export "$work/sky.acdf" --force --target "$@"; }
 
-defines=${brdf:+-DBRDF}
+defines=${define:+-D$define}
 
 # Steps of 2^-24 by which the density of a sample may differ from that of its direction. Where floats are IEEE's, and sums of
 # products are not fused: none.
@@ -72,7 +89,7 @@ on_opencl() {
     make_file
     export_sky c --tables "$work/tables.bin" -o "$work/exported.h"
     status=0
-    HOME=$work POCL_CACHE_DIR=$work "$work/device" "$work" $brdf || status=$?
+    HOME=$work POCL_CACHE_DIR=$work "$work/device" "$work" $define || status=$?
     [ "$status" != 77 ] || exit 77
     [ "$status" = 0 ]
     check 0
@@ -95,10 +112,11 @@ on_glslang() {
     make_file
     export_sky glsl -o "$work/sky.glsl"
     export_sky hlsl -o "$work/sky.hlsl"
-    local at='acdf_at(vec3(0.0, 1.0, 0.0)), ' of=
-    if [ "$brdf" ]; then
-        at='acdf_view(vec3(0.0, 0.6, 0.8)), ' of=_brdf
-    fi
+    local at='acdf_at(vec3(0.0, 1.0, 0.0)), '
+    case $define in
+    BRDF) at='acdf_view(vec3(0.0, 0.6, 0.8)), ' ;;
+    MAPS) at='acdf_sky(vec3(8.0, 3.0, 0.0)), ' ;;
+    esac
     local main="void main() { answer = acdf_sample$of(${at}uvec2(1u, 2u)) + acdf_sample$of(${at}vec2(0.5)) * acdf_pdf$of(${at}vec3(0.0, 0.0, 1.0)); }"
     for version in '300 es' '330' '430'; do
         {
@@ -158,7 +176,7 @@ on_browser() {
     make_file
     export_sky "$2" --tables "$work/tables.bin" -o "$work/sky.$2"
     cp "$here/$1.html" "$work/index.html"
-    python3 "$here/browser.py" "$work" "index.html${brdf:+?$brdf}" "${@:4}" || exit "$?"
+    python3 "$here/browser.py" "$work" "index.html${define:+?$define}" "${@:4}" || exit "$?"
     check "$3"
 }
 

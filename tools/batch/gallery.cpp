@@ -1,6 +1,7 @@
 #include "tools/batch/gallery.h"
 
 #include "tools/batch/source_picture.h"
+#include "tools/cli/coordinates.h"
 #include "tools/cli/html.h"
 #include "tools/cli/noise.h"
 #include "tools/cli/sizes.h"
@@ -64,6 +65,9 @@ std::string thumbnail(const std::string& path, const std::string& name) {
         shows += " for the normal +z";
     } else if (file.kind() == ACDF_KIND_ENVIRONMENT) {
         image = pdf_image(plot_map(build::Layout::latlong, kMapWidth), pdf_of(file.environment()));
+    } else if (file.kind() == ACDF_KIND_INDEXED) {
+        image = pdf_image(plot_map(build::Layout::latlong, kMapWidth), pdf_of(first_environment(file)));
+        shows += ", its first map";
     } else {
         return "";
     }

@@ -36,6 +36,8 @@ std::shared_ptr<Conversion> make_conversion(const BatchJob& job) {
         conversion.source = job.source;
         for (std::string* file : conversion.files())
             if (file != &conversion.source) *file = (std::filesystem::path(job.base) / *file).string();
+        if (!job.maps.empty() && !conversion.takes_all(job.maps))
+            throw OptionError("several maps in one file are for env, and need an axis: {\"axis\": \"time=6,9\"}");
         conversion.check();
     } catch (const CLI::ParseError& error) {
         throw OptionError(what_is_wrong(parsed->command, error));

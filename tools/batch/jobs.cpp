@@ -4,6 +4,7 @@
 #include "input/file_name.h"
 #include "input/probe/source.h"
 #include "tools/cli/file_input.h"
+#include "tools/cli/sequence.h"
 #include "tools/commands.h"
 
 #include <algorithm>
@@ -133,6 +134,7 @@ private:
     void add_line(const ManifestJob& line, const std::string& name, const fs::path& base) {
         BatchJob job;
         job.origin = name + ":" + std::to_string(line.line);
+        job.base = base.string();
         const std::string extension = input::lower_extension(line.source);
         const bool model = input::is_model(line.source);
         if (!line.kind && extension == ".npy") {
@@ -140,16 +142,45 @@ private:
             return;
         }
         job.kind = line.kind                                        ? line.kind
+                   : !line.maps.empty()                             ? find_kind("env")
                    : model || is_one_of(brdf_extensions, extension) ? find_kind("brdf")
                                                                     : defaults_.probe_kinds.front();
-        job.source = model && job.kind == find_kind("brdf") ? line.source : below(base, line.source);
-        job.base = base.string();
         job.options = line.options ? *line.options : defaults_.options(*job.kind, line.source);
-        const std::string stem =
-            model ? line.source
-                  : fs::path(input::probe_files(line.source)[0]).filename().replace_extension().string();
-        job.output = line.output.empty() ? stem + job.kind->suffix : line.output;
+        job.output = line.output.empty() ? stem_of(line.source) + job.kind->suffix : line.output;
+        try {
+            if (!line.maps.empty()) add_maps(line.maps, base, job);
+            else job.source = model && job.kind == find_kind("brdf") ? line.source : below(base, line.source);
+        } catch (const std::exception& error) {
+            out_.errors.push_back(job.origin + ": " + error.what());
+            return;
+        }
         out_.jobs.push_back(std::move(job));
+    }
+
+    static std::string stem_of(const std::string& source) {
+        return input::is_model(source)
+                   ? source
+                   : fs::path(input::probe_files(source)[0]).filename().replace_extension().string();
+    }
+
+    /// Sequences become their files, and an axis of these, unless there are others.
+    static void add_maps(const std::vector<std::string>& maps, const fs::path& base, BatchJob& job) {
+        const auto is_axis = [](const std::string& option) { return option.rfind("--axis", 0) == 0; };
+        std::string frames;
+        for (const std::string& map : maps) {
+            const std::string path = (base / map).string();
+            if (!is_sequence(path)) {
+                job.maps.push_back(path);
+                continue;
+            }
+            for (const Frame& frame : frames_of(path)) {
+                job.maps.push_back(frame.file);
+                frames += (frames.empty() ? "" : ",") + std::to_string(frame.number);
+            }
+        }
+        if (!frames.empty() && std::none_of(job.options.begin(), job.options.end(), is_axis))
+            job.options.push_back("--axis=frame=" + frames);
+        job.source = job.maps[0];
     }
 
     template <std::size_t N>
@@ -179,9 +210,8 @@ std::string add_bytes(const std::string& path, std::uint64_t& bytes) {
 std::string check_source(BatchJob& job) {
     if (find_non_utf8(job.source) != std::string::npos)
         return "the name of the source is not UTF-8, which files store it in; rename it";
-    if (job.kind == find_kind("brdf") && input::is_model(job.source)) return "";
     job.bytes = 0;
-    for (const std::string& file : input::probe_files(job.source))
+    for (const std::string& file : job.files())
         if (std::string what = add_bytes(file, job.bytes); !what.empty()) return what;
     return "";
 }
@@ -211,7 +241,7 @@ std::string check_output(const std::string& folder, BatchJob& job) {
 
 /// Of two jobs with the same output.
 std::string collision(const BatchJob& first, const BatchJob& job) {
-    const bool same = job.kind == first.kind && job.options == first.options &&
+    const bool same = job.kind == first.kind && job.options == first.options && job.maps == first.maps &&
                       fs::absolute(job.source).lexically_normal() == fs::absolute(first.source).lexically_normal();
     if (same && job.origin == first.origin) return job.origin + ": is given twice; give it once";
     if (same) return job.origin + ": is the same job as " + first.origin + "; leave one of them out";
@@ -226,7 +256,9 @@ void check_duplicates(const std::string& folder, BatchJobs& jobs) {
         if (!is_new) jobs.errors.push_back(collision(*first->second, job));
     }
     std::map<std::string, const BatchJob*> by_source;
-    for (const BatchJob& job : jobs.jobs) by_source.emplace(fs::absolute(job.source).lexically_normal(), &job);
+    for (const BatchJob& job : jobs.jobs)
+        for (const std::string& file : job.maps.empty() ? std::vector<std::string>{job.source} : job.maps)
+            by_source.emplace(fs::absolute(file).lexically_normal(), &job);
     for (const BatchJob& job : jobs.jobs) {
         for (fs::path above = fs::path(job.output).parent_path(); !above.empty(); above = above.parent_path())
             if (by_output.count(above.string()) > 0)
@@ -246,6 +278,12 @@ constexpr double visibility_seconds = 100.0;
 double BatchJob::seconds() const {
     const bool visibility = std::find(options.begin(), options.end(), "--visibility") != options.end();
     return kind->seconds + kind->seconds_each * double(bytes) + (visibility ? visibility_seconds : 0.0);
+}
+
+std::vector<std::string> BatchJob::files() const {
+    if (!maps.empty()) return maps;
+    if (kind == find_kind("brdf") && input::is_model(source)) return {};
+    return input::probe_files(source);
 }
 
 BatchSetting parse_setting(const std::string& text) {

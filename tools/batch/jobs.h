@@ -13,12 +13,15 @@ namespace acdf::tools {
 struct BatchJob {
     std::string origin; ///< whose fault it is: "library.jsonl:12", or the source
     const JobKind* kind = nullptr;
-    std::string source; ///< a path or, for BRDFs, a model
+    std::string source;            ///< a path or, for BRDFs, a model
+    std::vector<std::string> maps; ///< of a file of several maps all their paths, `source` the first; else empty
     std::vector<std::string> options;
     std::string base;        ///< the folder that paths among the options are relative to; empty: where we are
     std::string output;      ///< below the output folder, normalized
     std::uint64_t bytes = 0; ///< of the source
 
+    /// All files of the source; none of a model.
+    std::vector<std::string> files() const;
     /// To balance shards.
     double seconds() const;
 };

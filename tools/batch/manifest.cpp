@@ -68,7 +68,25 @@ std::string source_of(const Json& value) {
     return joined;
 }
 
-/// {"budget": "64KiB", "no-sharing": true} as {"--budget=64KiB", "--no-sharing"}.
+/// Files and sequences.
+std::vector<std::string> maps_of(const Json& value) {
+    if (!value.is_array() || value.empty())
+        fail("'maps' must be an array of files, or of sequences: [\"day.####.exr\"]");
+    std::vector<std::string> maps;
+    for (const Json& item : value) maps.push_back(text_of(item, "maps"));
+    return maps;
+}
+
+/// Adds {"budget": "64KiB"} as "--budget=64KiB", and {"no-sharing": true} as "--no-sharing".
+void add_option(const std::string& name, const Json& value, std::vector<std::string>& options) {
+    if (value.is_string()) options.push_back("--" + name + "=" + text_of(value, name.c_str()));
+    else if (value.is_number()) options.push_back("--" + name + "=" + value.dump());
+    else if (value.is_boolean() && value.get<bool>()) options.push_back("--" + name);
+    else if (!value.is_boolean())
+        fail("the value of option '" + name + "' must be a string, a number or true, not " + value.type_name());
+}
+
+/// An array of strings stands for an option that is given several times.
 std::vector<std::string> options_of_object(const Json& object) {
     std::vector<std::string> options;
     for (const auto& [name, value] : object.items()) {
@@ -76,11 +94,11 @@ std::vector<std::string> options_of_object(const Json& object) {
             fail("the name of an option has a control character");
         if (name.empty() || name[0] == '-' || name.find_first_of("= \t") != std::string::npos)
             fail("'" + name + "' is not the name of an option; write it without dashes");
-        if (value.is_string()) options.push_back("--" + name + "=" + text_of(value, name.c_str()));
-        else if (value.is_number()) options.push_back("--" + name + "=" + value.dump());
-        else if (value.is_boolean() && value.get<bool>()) options.push_back("--" + name);
-        else if (!value.is_boolean())
-            fail("the value of option '" + name + "' must be a string, a number or true, not " + value.type_name());
+        const bool several = value.is_array() && std::all_of(value.begin(), value.end(),
+                                                             [](const Json& each) { return each.is_string(); });
+        if (!several) add_option(name, value, options);
+        else
+            for (const Json& each : value) add_option(name, each, options);
     }
     return options;
 }
@@ -101,6 +119,7 @@ ManifestJob job_of(const Json& object) {
     ManifestJob job;
     for (const auto& [key, value] : object.items()) {
         if (key == "source") job.source = source_of(value);
+        else if (key == "maps") job.maps = maps_of(value);
         else if (key == "output") job.output = text_of(value, "output");
         else if (key == "options") job.options = options_of(value);
         else if (key == "kind") {
@@ -108,10 +127,12 @@ ManifestJob job_of(const Json& object) {
             job.kind = find_kind(name);
             if (!job.kind) fail("kind '" + name + "' is none of env, local and brdf");
         } else {
-            fail("has an unknown key '" + key + "'; there are source, kind, options and output");
+            fail("has an unknown key '" + key + "'; there are source, maps, kind, options and output");
         }
     }
-    if (job.source.empty()) fail("has no 'source'");
+    if (job.source.empty() && job.maps.empty()) fail("has no 'source'");
+    if (!job.source.empty() && !job.maps.empty()) fail("has 'source' and 'maps'; give one");
+    if (!job.maps.empty() && job.output.empty()) fail("has no 'output', which several maps need");
     return job;
 }
 

@@ -27,6 +27,7 @@ const JobKind* find_kind(std::string_view name);
 struct ManifestJob {
     std::size_t line = 0; ///< from 1
     std::string source;
+    std::vector<std::string> maps; ///< files and sequences, for one file of several maps
     const JobKind* kind = nullptr;
     std::optional<std::vector<std::string>> options; ///< as on a command line
     std::string output;

@@ -1,6 +1,5 @@
 #include "tools/batch/ninja.h"
 
-#include "input/brdf/models.h"
 #include "input/mesh/instances.h"
 #include "input/probe/source.h"
 #include "tools/cli/messages.h"
@@ -67,15 +66,12 @@ std::string absolute(const std::string& path) { return fs::absolute(path).lexica
 std::string edge(const PlannedJob& planned, bool large, const std::string& folder, const MakeConversion& make) {
     const BatchJob& job = planned.job;
     const std::shared_ptr<Conversion> conversion = make(job);
-    const bool model = job.kind == find_kind("brdf") && input::is_model(job.source);
-    const std::string source = model ? job.source : input::with_paths(job.source, absolute);
     std::string text = "build " + path_text(job.output) + ": convert";
-    if (!model)
-        for (const std::string& file : input::probe_files(source)) text += " " + path_text(file);
+    for (const std::string& file : job.files()) text += " " + path_text(absolute(file));
     // Paths among the options are relative to their manifest.
     const std::vector<std::string*> files = conversion->files();
     std::string output = job.output, at, between = " | ";
-    for (std::size_t i = 1; i < files.size(); ++i) {
+    for (std::size_t i = std::max<std::size_t>(job.maps.size(), 1); i < files.size(); ++i) {
         for (const std::string& file : input::scene_files(*files[i])) {
             text += between + path_text(absolute(file));
             between = " ";
@@ -83,7 +79,11 @@ std::string edge(const PlannedJob& planned, bool large, const std::string& folde
         output = absolute((fs::path(folder) / job.output).string());
         at = "  at = cd " + value(shell_quoted(absolute(job.base.empty() ? "." : job.base))) + " &&\n";
     }
-    std::vector<std::string> command = {job.kind->name, source, "--output=" + output, "--force", "--quiet"};
+    std::vector<std::string> command = {job.kind->name};
+    for (const std::string& map : job.maps) command.push_back(absolute(map));
+    if (job.maps.empty())
+        command.push_back(job.files().empty() ? job.source : input::with_paths(job.source, absolute));
+    command.insert(command.end(), {"--output=" + output, "--force", "--quiet"});
     if (!large) command.insert(command.end(), {"--threads", "1"});
     command.insert(command.end(), job.options.begin(), job.options.end());
     return text + "\n" + at + "  arguments = " + value(shell_command(command)) + "\n" +

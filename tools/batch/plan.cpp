@@ -6,6 +6,7 @@
 #include "reader/check/check.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/messages.h"
+#include "tools/cli/sequence.h"
 #include "tools/commands.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -26,10 +27,11 @@ std::string value_of(const File& file, const char* key) {
     return {text.data, text.size};
 }
 
-AcdfKind file_kind(const JobKind& kind) {
-    return std::strcmp(kind.name, "env") == 0     ? ACDF_KIND_ENVIRONMENT
-           : std::strcmp(kind.name, "local") == 0 ? ACDF_KIND_LOCAL
-                                                  : ACDF_KIND_BRDF;
+AcdfKind file_kind(const BatchJob& job) {
+    if (!job.maps.empty()) return ACDF_KIND_INDEXED;
+    return std::strcmp(job.kind->name, "env") == 0     ? ACDF_KIND_ENVIRONMENT
+           : std::strcmp(job.kind->name, "local") == 0 ? ACDF_KIND_LOCAL
+                                                       : ACDF_KIND_BRDF;
 }
 
 std::string first_fault(const std::vector<std::uint8_t>& bytes) {
@@ -46,6 +48,11 @@ std::string first_fault(const std::vector<std::uint8_t>& bytes) {
 bool is_of_source(const File& file, const BatchJob& job) {
     const std::string hash = value_of(file, "source.sha256");
     const std::string name = input::probe_name(job.source);
+    if (!job.maps.empty()) {
+        std::vector<std::string> digests;
+        for (const std::string& map : job.maps) digests.push_back(input::probe_sha256(map));
+        return value_of(file, "source.name") == name && hash == sha256_of_maps(digests, job.source);
+    }
     if (job.bytes == 0) return hash.empty() && value_of(file, "source.name") == job.source;
     return value_of(file, "source.name") == name && hash == input::probe_sha256(job.source);
 }
@@ -56,7 +63,8 @@ public:
     explicit Conversions(const MakeConversion& make) : make_(make) {}
 
     Conversion& of(const BatchJob& job) {
-        if (!last_ || job.kind != job_.kind || job.options != job_.options || job.base != job_.base) {
+        if (!last_ || job.kind != job_.kind || job.options != job_.options || job.base != job_.base ||
+            !job.maps.empty() || !job_.maps.empty()) {
             std::shared_ptr<Conversion> next = make_(job);
             text_ = next->option_text(); // reads a scene
             last_ = std::move(next);
@@ -89,7 +97,7 @@ std::string why_due(const std::vector<std::uint8_t>& bytes, const BatchJob& job,
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
         return std::string("its output cannot be read (") + status.message + ")";
-    if (file.kind() != file_kind(*job.kind)) return "its output is of kind " + build::kind_name(file.kind());
+    if (file.kind() != file_kind(job)) return "its output is of kind " + build::kind_name(file.kind());
     if (const std::string had = value_of(file, "fit.options"); had != option_text)
         return "its options changed from " + had;
     if (!is_of_source(file, job)) return "its source changed";
@@ -125,6 +133,7 @@ void check_options(BatchJobs& jobs, const MakeConversion& make) {
     for (const BatchJob& job : jobs.jobs) {
         std::vector<std::string> key = job.options;
         key.insert(key.end(), {job.kind->name, job.base});
+        key.insert(key.end(), job.maps.begin(), job.maps.end());
         const auto [found, is_new] = seen.emplace(std::move(key), "");
         if (is_new) try {
                 make(job)->option_text(); // reads a scene

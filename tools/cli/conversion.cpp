@@ -118,7 +118,7 @@ void add_conversion(CLI::App& command, std::shared_ptr<Conversion> conversion, c
         if (conversion->takes_all(options->sources)) {
             if (options->output.empty())
                 throw CLI::ValidationError("--output", "is needed where several maps become one file");
-            options->sources.resize(1);
+            options->sources = {conversion->source};
         }
         exit_code = run(*conversion, *options, suffix);
     });

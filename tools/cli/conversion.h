@@ -60,8 +60,8 @@ public:
     /// How the source is read; null: it is no probe.
     virtual const input::ProbeOptions* reading() const { return nullptr; }
 
-    /// Whether several sources become one file; then they are taken over, and `source` is the first. Throws as
-    /// check().
+    /// Whether several sources become one file; then they are taken over, and `source` is the first. Call before
+    /// check(), and throws as it.
     virtual bool takes_all(const std::vector<std::string>&) { return false; }
 
     /// Deterministic for any number of threads. Throws Failure or input::Error: one line.

@@ -47,4 +47,10 @@ MixedEnvironment chosen_environment(const std::string& path, const File& file, c
     return file.indexed().at(coordinates.data());
 }
 
+MixedEnvironment first_environment(const File& file) {
+    double coordinates[ACDF_MOST_INDEXED_AXES] = {};
+    for (std::uint32_t i = 2; i < file.description().axis_count; ++i) coordinates[i - 2] = file.axis(i).low;
+    return file.indexed().at(coordinates);
+}
+
 } // namespace acdf::tools

@@ -16,4 +16,7 @@ std::vector<std::string> indexed_axes(const File& file);
 /// Throws Failure where one is missing or no number.
 MixedEnvironment chosen_environment(const std::string& path, const File& file, const std::vector<std::string>& at);
 
+/// That of the first map.
+MixedEnvironment first_environment(const File& file);
+
 } // namespace acdf::tools

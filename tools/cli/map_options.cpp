@@ -1,25 +1,20 @@
 #include "tools/cli/map_options.h"
 
-#include "build/builder/options.h"
 #include "build/builder/sources.h"
-#include "build/text/format_names.h"
-#include "input/sha256.h"
+#include "tools/cli/built.h"
 #include "tools/cli/json.h"
 #include "tools/cli/probe_source.h"
+#include "tools/cli/sequence.h"
 #include "tools/commands.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <set>
 
 namespace acdf::tools {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::vector<double> numbers_of(const std::string& text, const char* option) {
     std::vector<double> out;
@@ -34,23 +29,6 @@ std::vector<double> numbers_of(const std::string& text, const char* option) {
         begin = end + 1;
     }
     return out;
-}
-
-/// sky.####.exr, where no file has this name itself.
-bool is_pattern(const std::string& source) {
-    return fs::path(source).filename().string().find('#') != std::string::npos && !fs::exists(source);
-}
-
-/// The number of a frame: what stands in the place of the #, all digits.
-bool frame_of(const std::string& name, const std::string& before, const std::string& after, std::size_t digits,
-              long long& frame) {
-    if (name.size() < before.size() + after.size() + digits || name.rfind(before, 0) != 0 ||
-        name.compare(name.size() - after.size(), after.size(), after) != 0)
-        return false;
-    const std::string number = name.substr(before.size(), name.size() - before.size() - after.size());
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), frame);
-    return error == std::errc() && end == number.data() + number.size() && number[0] != '-' &&
-           (number.size() == digits || number[0] != '0');
 }
 
 } // namespace
@@ -82,7 +60,7 @@ void MapOptions::add(CLI::App& command) {
 }
 
 bool MapOptions::given(const std::vector<std::string>& sources) const {
-    return !axis_texts_.empty() || std::any_of(sources.begin(), sources.end(), is_pattern);
+    return !axis_texts_.empty() || std::any_of(sources.begin(), sources.end(), is_sequence);
 }
 
 void MapOptions::parse_axes() {
@@ -95,37 +73,22 @@ void MapOptions::parse_axes() {
     if (axes_.size() > ACDF_MOST_INDEXED_AXES) throw CLI::ValidationError("--axis", "is for up to three axes");
 }
 
-void MapOptions::add_frames(const std::string& pattern) {
-    const fs::path path(pattern);
-    const std::string name = path.filename().string();
-    const std::size_t first = name.find('#'), last = name.find_last_of('#');
-    const std::string before = name.substr(0, first), after = name.substr(last + 1);
-    std::vector<std::pair<long long, std::string>> frames;
-    std::error_code error;
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-        long long frame = 0;
-        const std::string found = entry.path().filename().string();
-        if (frame_of(found, before, after, last - first + 1, frame))
-            frames.emplace_back(frame, path.has_parent_path() ? (folder / found).string() : found);
-    }
-    if (frames.empty()) throw Failure(pattern + ": there are no such files; a # stands for a digit");
-    std::sort(frames.begin(), frames.end());
+void MapOptions::add_frames(const std::string& sequence) {
     const bool named = !axes_.empty();
     if (!named) axes_.push_back({"frame", {}});
-    for (const auto& [frame, file] : frames) {
-        files_.push_back(file);
-        if (!named) axes_[0].coordinates.push_back(double(frame));
+    for (const Frame& frame : frames_of(sequence)) {
+        files_.push_back(frame.file);
+        if (!named) axes_[0].coordinates.push_back(double(frame.number));
     }
 }
 
 void MapOptions::take(const std::vector<std::string>& sources) {
     parse_axes();
     for (const std::string& source : sources)
-        if (is_pattern(source)) add_frames(source);
+        if (is_sequence(source)) add_frames(source);
         else files_.push_back(source);
     std::size_t count = 1;
-    for (const build::MapAxis& axis : axes_) count *= axis.coordinates.size();
+    for (const builder::MapAxis& axis : axes_) count *= axis.coordinates.size();
     if (count != files_.size())
         throw CLI::ValidationError("--axis", "makes " + std::to_string(count) + " maps, and " +
                                                  std::to_string(files_.size()) + " are given");
@@ -133,65 +96,48 @@ void MapOptions::take(const std::vector<std::string>& sources) {
         throw CLI::ValidationError("--sun", "is given once for each map, and without --no-sun");
     for (const std::string& text : sun_texts_) {
         const std::vector<double> d = numbers_of(text, "--sun");
-        const double length = d.size() == 3 ? std::hypot(d[0], d[1], d[2]) : -1.0;
-        if (length < 0.0) throw CLI::ValidationError("--sun", "needs three numbers such as 0.6,0,0.8");
-        const double scale = length > 0.0 ? 1.0 / length : 0.0;
-        suns_.push_back({d[0] * scale, d[1] * scale, d[2] * scale});
+        if (d.size() != 3) throw CLI::ValidationError("--sun", "needs three numbers such as 0.6,0,0.8");
+        suns_.push_back({d[0], d[1], d[2]});
     }
 }
 
-build::IndexedOptions MapOptions::options(const input::ProbeOptions& reading, const builder::TargetOptions& target,
-                                          std::uint64_t budget, AcdfCodec codec) const {
-    build::IndexedOptions out;
-    out.target = builder::internal(target);
-    out.budget = budget;
-    out.codec = codec;
+builder::IndexedOptions MapOptions::options(const input::ProbeOptions& reading,
+                                            const builder::EnvironmentOptions& environment) const {
+    builder::IndexedOptions out;
+    out.target = environment.target;
+    out.goal = environment.goal;
+    out.codec = environment.codec;
     out.axes = axes_;
     out.sun = !no_sun_;
     out.suns = suns_;
-    out.reading = reading_text(reading) + builder::wrap_text(builder::repeats(target));
+    out.source.reading = reading_text(reading);
     return out;
 }
 
-Converted MapOptions::convert(const input::ProbeOptions& reading, const builder::TargetOptions& target,
-                              std::uint64_t budget, AcdfCodec codec, const Listener& listener) const {
-    std::vector<builder::Target> targets, texels;
-    std::string names, digests;
+Converted MapOptions::convert(const input::ProbeOptions& reading, const builder::EnvironmentOptions& environment,
+                              const Listener& listener) const {
+    constexpr double kReading = 0.2; // of the time, about
+    builder::IndexedOptions all = options(reading, environment);
+    std::vector<builder::IndexedMap> maps(files_.size());
+    std::vector<std::string> digests;
     std::set<std::string> notes; // most hold for all maps
     const Note note = [&](const std::string& text) {
         if (notes.insert(text).second) listener.note(text);
     };
-    builder::Source source;
     for (std::size_t i = 0; i < files_.size(); ++i) {
-        const ProbeTarget loaded = load_target(files_[i], reading, target, note);
-        if (loaded.resampled)
-            throw Failure(files_[i] + ": several maps are stored on their own grid, lat-long or octahedral");
-        source.projection = input::to_string(loaded.probe.projection);
-        digests += loaded.probe.source_sha256 + "\n";
-        if (i == 0) source.name = loaded.probe.source_name;
-        targets.push_back(loaded.target);
-        builder::TargetOptions nearest = target;
-        nearest.filter = ACDF_FILTER_NEAREST;
-        texels.push_back(target.filter == ACDF_FILTER_NEAREST
-                             ? loaded.target
-                             : load_target(files_[i], reading, nearest, [](const std::string&) {}).target);
-        if (listener.progress) listener.progress(0.2 * double(i + 1) / double(files_.size()), "reading");
+        const ProbeTarget loaded = load_map(files_[i], reading, all.target, note, maps[i].texels);
+        maps[i].fitted = loaded.target;
+        all.source.projection = input::to_string(loaded.probe.projection);
+        digests.push_back(loaded.probe.source_sha256);
+        if (i == 0) all.source.name = loaded.probe.source_name;
+        if (listener.progress) listener.progress(kReading * double(i + 1) / double(files_.size()), "reading");
     }
-    source.sha256 = input::text_sha256(digests, files_[0]);
-    std::vector<build::SunMap> maps;
-    for (std::size_t i = 0; i < targets.size(); ++i)
-        maps.push_back({&builder::grid_of(targets[i]), &builder::grid_of(texels[i]), target.filter});
-    build::IndexedEnvironmentFile made;
-    try {
-        made = build::build_indexed(maps, source, options(reading, target, budget, codec),
-                                    [&](double share, const char* what) {
-                                        if (listener.progress) listener.progress(0.2 + 0.8 * share, what);
-                                    });
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& error) {
-        throw Failure(files_[0] + ": " + error.what());
-    }
+    all.source.sha256 = sha256_of_maps(digests, files_[0]);
+    const build::Progress building = [&](double share, const char* what) {
+        if (listener.progress) listener.progress(kReading + (1.0 - kReading) * share, what);
+    };
+    builder::IndexedFile made;
+    require_built(files_[0], builder::indexed(maps, all, made, told(building)));
     double worst = 0.0;
     nlohmann::ordered_json each = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < made.accuracy.size(); ++i) {

@@ -1,13 +1,13 @@
 // Several maps in one file: what `acdf env --axis` does.
 #pragma once
 
-#include "build/indexed/environment.h"
 #include "tools/cli/conversion.h"
 
 #include <acdf/builder.h>
 
 #include <CLI/CLI.hpp>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -17,29 +17,29 @@ namespace acdf::tools {
 class MapOptions {
 public:
     void add(CLI::App& command);
-    /// Whether sources become one file: there are axes, or a source is a pattern such as sky.####.exr.
+    /// Whether sources become one file: there are axes, or a source is a sequence (tools/cli/sequence.h).
     bool given(const std::vector<std::string>& sources) const;
-    /// Takes the sources over. Patterns become the files that they stand for, and an axis `frame`. Throws
-    /// CLI::ValidationError where they do not fit the axes, and Failure where a pattern stands for no file.
+    /// Takes the sources over. Sequences become the files that they stand for, and an axis `frame`. Throws
+    /// CLI::ValidationError where they do not fit the axes, and Failure where a sequence has no files.
     void take(const std::vector<std::string>& sources);
 
     std::vector<std::string>& files() { return files_; }
+    std::size_t count() const { return files_.size(); }
     bool any() const { return !axes_.empty(); }
-    Converted convert(const input::ProbeOptions& reading, const builder::TargetOptions& target,
-                      std::uint64_t budget, AcdfCodec codec, const Listener& listener) const;
-    /// The options as the file stores them.
-    std::string text(const build::IndexedOptions& options) const { return build::option_text(options); }
-    build::IndexedOptions options(const input::ProbeOptions& reading, const builder::TargetOptions& target,
-                                  std::uint64_t budget, AcdfCodec codec) const;
+    /// Of those of an environment only target, budget and codec count.
+    builder::IndexedOptions options(const input::ProbeOptions& reading,
+                                    const builder::EnvironmentOptions& environment) const;
+    Converted convert(const input::ProbeOptions& reading, const builder::EnvironmentOptions& environment,
+                      const Listener& listener) const;
 
 private:
     void parse_axes();
-    void add_frames(const std::string& pattern);
+    void add_frames(const std::string& sequence);
 
     std::vector<std::string> axis_texts_, sun_texts_;
     bool no_sun_ = false;
-    std::vector<build::MapAxis> axes_;
-    std::vector<build::SunDirection> suns_;
+    std::vector<builder::MapAxis> axes_;
+    std::vector<std::array<double, 3>> suns_;
     std::vector<std::string> files_;
 };
 

@@ -100,12 +100,13 @@ input::Probe load_probe(const std::string& path, const input::ProbeOptions& opti
 
 namespace {
 
-ProbeTarget load(const std::string& path, const input::ProbeOptions& options, builder::TargetRows rows,
-                 const Note& note) {
+/// `finish` returns the target of the rows.
+ProbeTarget load(const std::string& path, const input::ProbeOptions& options, build::ProbeRows& rows,
+                 const std::function<builder::Target()>& finish, const Note& note) {
     ProbeTarget out;
     out.target = lit(path, out.probe, [&] {
         out.probe = input::read_probe(path, options, rows);
-        return rows.finish();
+        return finish();
     });
     const builder::Target::Data& made = *out.target.data();
     out.error = made.error;
@@ -117,6 +118,22 @@ ProbeTarget load(const std::string& path, const input::ProbeOptions& options, bu
     return out;
 }
 
+ProbeTarget load(const std::string& path, const input::ProbeOptions& options, builder::TargetRows rows,
+                 const Note& note) {
+    return load(
+        path, options, rows, [&] { return rows.finish(); }, note);
+}
+
+ProbeTarget load(const std::string& path, const input::ProbeOptions& options, builder::IndexedMapRows rows,
+                 const Note& note, builder::Target& texels) {
+    const auto finish = [&] {
+        builder::IndexedMap map = rows.finish();
+        texels = std::move(map.texels);
+        return std::move(map.fitted);
+    };
+    return load(path, options, rows, finish, note);
+}
+
 } // namespace
 
 ProbeTarget load_target(const std::string& path, const input::ProbeOptions& options,
@@ -124,6 +141,13 @@ ProbeTarget load_target(const std::string& path, const input::ProbeOptions& opti
     builder::TargetOptions chosen = target_options;
     chosen.domain = options.domain;
     return load(path, options, builder::TargetRows(chosen), note);
+}
+
+ProbeTarget load_map(const std::string& path, const input::ProbeOptions& options,
+                     const builder::TargetOptions& target_options, const Note& note, builder::Target& texels) {
+    builder::TargetOptions chosen = target_options;
+    chosen.domain = options.domain;
+    return load(path, options, builder::IndexedMapRows(chosen), note, texels);
 }
 
 namespace {
@@ -136,12 +160,12 @@ bool made_with(const File& file, const std::string& option) {
 
 } // namespace
 
-builder::TargetOptions stored_options(const File& file) {
+builder::TargetOptions stored_options(const File& file, std::optional<AcdfFilter> filter) {
     const AcdfDescription& d = file.description();
     builder::TargetOptions out;
     out.channels = {static_cast<AcdfChannels>(d.channels),
                     {d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]}};
-    out.filter = static_cast<AcdfFilter>(d.filter);
+    out.filter = filter.value_or(static_cast<AcdfFilter>(d.filter));
     if (made_with(file, "--wrap repeat")) out.wrap = builder::Wrap::repeat;
     return out;
 }
@@ -188,25 +212,36 @@ input::ProbeOptions options_as_made(const input::ProbeOptions& given, const File
 
 } // namespace
 
+namespace {
+
+build::Domain grid_of(const File& file) {
+    return {static_cast<AcdfParameterization>(file.description().parameterization), file.axis(0).resolution,
+            file.axis(1).resolution};
+}
+
+} // namespace
+
 ProbeTarget source_target(const std::string& path, const File& file, const std::string& source,
                           const input::ProbeOptions& given, bool quiet, std::optional<AcdfFilter> filter) {
-    const input::ProbeOptions options = options_as_made(given, file, source);
-    const build::Domain grid{static_cast<AcdfParameterization>(file.description().parameterization),
-                             file.axis(0).resolution, file.axis(1).resolution};
-    builder::TargetOptions target = stored_options(file);
-    target.filter = filter.value_or(target.filter);
-    ProbeTarget out = load(source, options, builder::TargetRows(target, {}, grid), notes_of(source, quiet));
+    ProbeTarget out =
+        load(source, options_as_made(given, file, source),
+             builder::TargetRows(stored_options(file, filter), {}, grid_of(file)), notes_of(source, quiet));
     if (!quiet) note_another(path, file, source, out.probe.source_sha256);
     return out;
+}
+
+ProbeTarget source_map(const File& file, const std::string& source, const input::ProbeOptions& given,
+                       std::optional<AcdfFilter> filter, builder::Target& texels) {
+    return load(source, options_as_made(given, file, source),
+                builder::IndexedMapRows(stored_options(file, filter), {}, grid_of(file)), notes_of(source, true),
+                texels);
 }
 
 ProbeTarget latlong_target(const File& file, const std::string& source, const input::ProbeOptions& given,
                            std::optional<AcdfFilter> filter) {
     input::ProbeOptions options = options_as_made(given, file, source);
     options.domain = input::Domain::latlong;
-    builder::TargetOptions target = stored_options(file);
-    target.filter = filter.value_or(target.filter);
-    return load_target(source, options, target, notes_of(source, true));
+    return load_target(source, options, stored_options(file, filter), notes_of(source, true));
 }
 
 std::string resampling_warning(const ProbeTarget& target, double least_variance, double relative_variance) {

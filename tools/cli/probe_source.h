@@ -43,18 +43,27 @@ struct ProbeTarget {
 ProbeTarget load_target(const std::string& path, const input::ProbeOptions& options,
                         const builder::TargetOptions& target_options, const Note& note);
 
+/// The same of one of several maps for one file; `texels` as well. Throws Failure, too, where it would be
+/// resampled.
+ProbeTarget load_map(const std::string& path, const input::ProbeOptions& options,
+                     const builder::TargetOptions& target_options, const Note& note, builder::Target& texels);
+
 /// Reads a probe, and reports the same on stderr unless `quiet`. Throws Error.
 input::Probe load_probe(const std::string& path, const input::ProbeOptions& options, bool quiet);
 
-/// What a file says of channels, filter and wrap.
-builder::TargetOptions stored_options(const File& file);
+/// What a file says of channels, filter and wrap. `filter`: of another lookup than the file was made for.
+builder::TargetOptions stored_options(const File& file, std::optional<AcdfFilter> filter = {});
 
 /// What a renderer that looks `source` up integrates, on the grid of a file: what that says of channels and filter.
 /// The source may have any layout and resolution; the projection or the faces that the file was made with need not
-/// be given again where this is its very source. `filter`: of another lookup than the file was made for. Reports on
-/// stderr, unless `quiet`, where it is another file than the file was made from.
+/// be given again where this is its very source. `filter`: as stored_options(). Reports on stderr, unless `quiet`,
+/// where it is another file than the file was made from.
 ProbeTarget source_target(const std::string& path, const File& file, const std::string& source,
                           const input::ProbeOptions& options, bool quiet, std::optional<AcdfFilter> filter = {});
+
+/// The same without a report, and with the texels themselves (builder::IndexedMap).
+ProbeTarget source_map(const File& file, const std::string& source, const input::ProbeOptions& options,
+                       std::optional<AcdfFilter> filter, builder::Target& texels);
 
 /// The same on a lat-long grid, whatever the file's.
 ProbeTarget latlong_target(const File& file, const std::string& source, const input::ProbeOptions& options,

@@ -128,13 +128,11 @@ void refuse_options_of_other_kinds(const MeasureArguments& options, AcdfKind kin
 /// The map is looked up by its filter, and texel by texel where the sun is.
 void measure_indexed(const MeasureArguments& options, const File& file) {
     const MixedEnvironment sky = chosen_environment(options.file, file, options.at);
-    const auto read = [&](std::optional<AcdfFilter> filter, bool quiet) {
-        return source_target(options.file, file, options.source, options.input, quiet, filter);
-    };
-    const ProbeTarget source = read(options.filter, true), texels = read(ACDF_FILTER_NEAREST, true);
+    builder::Target texels;
+    const ProbeTarget source = source_map(file, options.source, options.input, options.filter, texels);
     const AcdfFilter filter = options.filter.value_or(static_cast<AcdfFilter>(file.description().filter));
-    const build::IndexedAccuracy a =
-        build::measure_mixed(sky, {&builder::grid_of(source.target), &builder::grid_of(texels.target), filter});
+    const builder::MapAccuracy a =
+        build::measure_mixed(sky, {&builder::grid_of(source.target), &builder::grid_of(texels), filter});
     if (options.json) {
         const nlohmann::ordered_json out = {{"file", options.file},
                                             {"source", options.source},

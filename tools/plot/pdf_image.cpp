@@ -11,6 +11,10 @@ PdfFunction pdf_of(const EnvironmentView& view) {
     return [view](const float direction[3]) { return view.pdf(direction); };
 }
 
+PdfFunction pdf_of(const MixedEnvironment& view) {
+    return [view](const float direction[3]) { return view.pdf(direction); };
+}
+
 PdfFunction pdf_of(const compress::Target& target) {
     const double scale = 1.0 / compress::integral(target);
     const bool square = target.parameterization == ACDF_PARAM_OCTAHEDRAL;

@@ -18,6 +18,7 @@ using PdfFunction = std::function<float(const float direction[3])>;
 
 /// The stored pdf, exactly. The view's File must outlive the result.
 PdfFunction pdf_of(const EnvironmentView& view);
+PdfFunction pdf_of(const MixedEnvironment& view);
 
 /// The pdf proportional to `target` at full resolution (nearest lookup). `target` must outlive the result and
 /// have energy.

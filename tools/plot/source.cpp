@@ -125,8 +125,7 @@ void refuse_options_of_other_kinds(const PlotArguments& options, AcdfKind kind) 
 
 void load_indexed(const PlotArguments& options, Plotted& source) {
     const File& file = source.stored.file;
-    const MixedEnvironment view = chosen_environment(options.file, file, options.at);
-    source.pdf = [view](const float direction[3]) { return view.pdf(direction); };
+    source.pdf = pdf_of(chosen_environment(options.file, file, options.at));
     source.indexed = true;
     source.columns = file.axis(ACDF_AXIS_PHI).resolution;
     source.rows = file.axis(ACDF_AXIS_THETA).resolution;

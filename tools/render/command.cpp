@@ -1,4 +1,5 @@
 // acdf render: direct lighting of a scene with several samplers.
+#include "tools/cli/comma_list.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/messages.h"
@@ -29,7 +30,7 @@ namespace {
 
 struct RenderArguments {
     std::string scene, output, data = ".", size;
-    std::vector<std::string> samplers;
+    std::vector<std::string> samplers, at;
     std::uint32_t samples = 0, seeds = 0; ///< 0: the scene's
     ComparisonOptions comparison;
     std::vector<measure::Numbers> sequences{measure::Numbers::independent, measure::Numbers::sobol};
@@ -196,7 +197,7 @@ RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, s
         normals.push_back({{n[0], n[1], n[2]}, 1.0});
     }
     SamplerBuilder builder(target, brdfs_of(scene), options.data, std::move(normals), &scene.scene.geometry,
-                           &scene.points.points);
+                           &scene.points.points, options.at);
     bool occluders = false;
     for (const measure::Object& object : scene.scene.geometry.objects) occluders |= !object.seen;
     std::vector<measure::ScenePoint> open;
@@ -330,6 +331,11 @@ void add_scene_options(CLI::App& command, RenderArguments& options) {
         ->option_text("TEXT ...")
         ->expected(1)
         ->take_all()
+        ->group("Input");
+    comma_separated(command.add_option("--at", options.at,
+                                       "Of files of several maps (file:day.acdf): where among them, at a map or "
+                                       "between; the scene has that map or one for it"))
+        ->option_text("NAME=V,...")
         ->group("Input");
     command.add_option("--samples", options.samples, "Samples of each estimate, instead of the scene's")
         ->check(CLI::Range(1, 65536))

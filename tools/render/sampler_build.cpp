@@ -10,6 +10,7 @@
 #include "measure/scenes/portals.h"
 #include "measure/scenes/surface_points.h"
 #include "tools/cli/built.h"
+#include "tools/cli/coordinates.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/mesh_visibility.h"
 #include "tools/commands.h"
@@ -117,10 +118,13 @@ Table full_brdf_table(const input::Brdf& brdf, bool centre) {
     return {table, measure::tabulated_brdf_sampler(*table)};
 }
 
-Table given_file(const std::string& path) {
+/// `at`: where among several maps.
+Table given_file(const std::string& path, const std::vector<std::string>& at) {
     auto loaded = std::make_shared<LoadedFile>(load_file(path));
-    LightSamplerPtr sampler = measure::file_sampler(loaded->file);
     const File* file = &loaded->file;
+    LightSamplerPtr sampler = file->kind() == ACDF_KIND_INDEXED
+                                  ? measure::sky_sampler(*file, chosen_environment(path, *file, at))
+                                  : measure::file_sampler(*file);
     return {loaded, std::move(sampler), file};
 }
 
@@ -156,6 +160,7 @@ struct SamplerBuilder::Store {
     std::vector<builder::SceneNormal> normals;
     const measure::Geometry* geometry;
     const std::vector<measure::ScenePoint>* points;
+    std::vector<std::string> at;
     std::map<std::string, SamplerTable> tables; ///< by text, and the material where that matters
     std::map<std::string, std::unique_ptr<const measure::StratifiedMap>> maps;
     std::vector<std::unique_ptr<measure::Estimator>> estimators;
@@ -195,7 +200,7 @@ struct SamplerBuilder::Store {
         case SamplerKind::brdf_table:
             return full_brdf_table(*brdfs[material], spec.centre);
         case SamplerKind::file:
-            return given_file((std::filesystem::path(data) / spec.path).string());
+            return given_file((std::filesystem::path(data) / spec.path).string(), at);
         case SamplerKind::alias:
             return {nullptr, measure::alias_sampler(target)};
         case SamplerKind::hierarchical:
@@ -323,7 +328,8 @@ struct SamplerBuilder::Store {
 
 SamplerBuilder::SamplerBuilder(const builder::Target& target, std::vector<const input::Brdf*> brdfs,
                                std::string data, std::vector<builder::SceneNormal> normals,
-                               const measure::Geometry* geometry, const std::vector<measure::ScenePoint>* points)
+                               const measure::Geometry* geometry, const std::vector<measure::ScenePoint>* points,
+                               std::vector<std::string> at)
     : store_(new Store{target,
                        texels_of(builder::grid_of(target)),
                        std::move(brdfs),
@@ -331,6 +337,7 @@ SamplerBuilder::SamplerBuilder(const builder::Target& target, std::vector<const 
                        std::move(normals),
                        geometry,
                        points,
+                       std::move(at),
                        {},
                        {},
                        {}}) {}

@@ -26,10 +26,11 @@ class SamplerBuilder {
 public:
     /// `brdfs`: one a material, which are referred to and must outlive the builder, as `geometry` and `points`,
     /// where there are such: positions are those on the one, caches are made for the others. Files are relative to
-    /// `data`. `normals`: those that the camera sees, for samplers that are made for them.
+    /// `data`; of files of several maps it is the environment `at` coordinates (tools/cli/coordinates.h).
+    /// `normals`: those that the camera sees, for samplers that are made for them.
     SamplerBuilder(const builder::Target& target, std::vector<const input::Brdf*> brdfs, std::string data,
                    std::vector<builder::SceneNormal> normals = {}, const measure::Geometry* geometry = nullptr,
-                   const std::vector<measure::ScenePoint>* points = nullptr);
+                   const std::vector<measure::ScenePoint>* points = nullptr, std::vector<std::string> at = {});
     ~SamplerBuilder();
     SamplerBuilder(const SamplerBuilder&) = delete;
     SamplerBuilder& operator=(const SamplerBuilder&) = delete;

@@ -26,6 +26,15 @@ struct EnvironmentAccuracy {
     bool combined = false;
 };
 
+/// Of one of several maps, at its coordinates, as in EnvironmentAccuracy. Near the sun by summation over 64 points
+/// of each texel.
+struct MapAccuracy {
+    double relative_variance = 0.0;
+    double max_weight = 0.0;
+    std::uint64_t support_violations = 0;
+    double total = 0.0; ///< of the map
+};
+
 /// Over normals that see any light, each as important as any other; f is the light times the cosine.
 struct LocalAccuracy {
     double relative_variance = 0.0; ///< mean, of one sample of f/p; infinite with a violation

@@ -405,4 +405,5 @@ std::string option_text(const BrdfOptions& options) noexcept;
 
 } // namespace acdf::builder
 
+#include <acdf/maps.h>
 #include <acdf/rebuild.h>

@@ -225,6 +225,18 @@ void check(const BrdfOptions& options) {
             "goal.cells of a BRDF is above ACDF_MAX_TILES");
 }
 
+void check(const IndexedOptions& options, std::size_t maps) {
+    check(options.target);
+    check(options.goal, 1);
+    require(options.goal.kind == Goal::Kind::budget || options.goal.kind == Goal::Kind::automatic,
+            "the goal of several maps is a budget");
+    check(options.codec);
+    check(options.source);
+    for (const MapAxis& axis : options.axes)
+        require(is_text(axis.name, 15), "the name of an axis is not UTF-8 or has more than 15 bytes");
+    build::check(internal(options), maps);
+}
+
 void check(const TableOptions& options) {
     check(options.goal, 1);
     check_max_weight(options.max_weight);

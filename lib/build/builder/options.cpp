@@ -209,6 +209,18 @@ build::BrdfFileOptions internal(const BrdfOptions& options) {
     return out;
 }
 
+build::IndexedOptions internal(const IndexedOptions& options) {
+    build::IndexedOptions out;
+    out.target = internal(options.target);
+    out.budget = internal(options.goal, DefaultBudget::environment).budget;
+    out.codec = options.codec;
+    out.axes = options.axes;
+    out.sun = options.sun;
+    out.suns = options.suns;
+    out.reading = options.source.reading + wrap_text(repeats(options.target));
+    return out;
+}
+
 build::TableOptions internal(const TableOptions& options, std::uint64_t bins) {
     build::TableOptions out;
     out.indexed = options.indexed;
@@ -224,14 +236,22 @@ build::TableOptions internal(const TableOptions& options, std::uint64_t bins) {
     return out;
 }
 
-std::string option_text(const EnvironmentOptions& options) noexcept { return text_of(options); }
-std::string option_text(const LocalOptions& options) noexcept { return text_of(options); }
-std::string option_text(const BrdfOptions& options) noexcept {
+namespace {
+
+template <class Options>
+std::string own_text_of(const Options& options) noexcept {
     try {
         return build::option_text(internal(options));
     } catch (...) {
         return {};
     }
 }
+
+} // namespace
+
+std::string option_text(const EnvironmentOptions& options) noexcept { return text_of(options); }
+std::string option_text(const LocalOptions& options) noexcept { return text_of(options); }
+std::string option_text(const BrdfOptions& options) noexcept { return own_text_of(options); }
+std::string option_text(const IndexedOptions& options) noexcept { return own_text_of(options); }
 
 } // namespace acdf::builder

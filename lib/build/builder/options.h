@@ -3,6 +3,7 @@
 
 #include "build/brdf.h"
 #include "build/environment.h"
+#include "build/indexed/environment.h"
 #include "build/local.h"
 #include "build/table.h"
 
@@ -14,6 +15,7 @@ compress::TargetOptions internal(const TargetOptions& options);
 build::EnvironmentOptions internal(const EnvironmentOptions& options);
 build::LocalOptions internal(const LocalOptions& options);
 build::BrdfFileOptions internal(const BrdfOptions& options);
+build::IndexedOptions internal(const IndexedOptions& options);
 build::TableOptions internal(const TableOptions& options, std::uint64_t bins);
 
 // Whether no option asks for what the fast shape has not.
@@ -27,5 +29,6 @@ void check(const EnvironmentOptions& options);
 void check(const LocalOptions& options);
 void check(const BrdfOptions& options);
 void check(const TableOptions& options);
+void check(const IndexedOptions& options, std::size_t maps);
 
 } // namespace acdf::builder

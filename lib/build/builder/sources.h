@@ -43,6 +43,9 @@ public:
                         std::optional<build::Domain> grid = {})
         : options_(options), progress_(std::move(progress)), grid_(grid) {}
 
+    /// Whether a map is fitted on another grid than its own.
+    bool resamples(const build::Map& map) const;
+
     /// Whoever asked for luminance gets it by these.
     void set_luminance(const ChannelWeights& weights) override;
     bool take_map(const build::Map& map, const std::vector<float>& rgb) override;
@@ -67,6 +70,37 @@ private:
     std::optional<compress::EnvironmentTarget> own_; ///< of a lat-long map on its own
     build::SourceTarget made_;
 };
+
+/// One of several maps: what is fitted of it, and its own texels.
+struct IndexedMap {
+    Target fitted, texels;
+};
+
+/// Such a map on its way: all of it is read once. Where no grid is given it has to be its own: begin() and
+/// take_map() throw std::invalid_argument.
+class IndexedMapRows : public build::ProbeRows {
+public:
+    explicit IndexedMapRows(const TargetOptions& options, const build::Progress& progress = {},
+                            std::optional<build::Domain> grid = {});
+
+    void set_luminance(const ChannelWeights& weights) override;
+    bool take_map(const build::Map& map, const std::vector<float>& rgb) override;
+    void begin(int width, int height) override;
+    void take(int first, int count, const float* rgb) override;
+    /// As TargetRows.
+    IndexedMap finish(const BadTexels& bad = {}, const std::string& projection = {});
+
+private:
+    void require_own_grid(const build::Map& map) const;
+
+    bool has_grid_;
+    TargetRows fitted_;
+    std::optional<TargetRows> texels_; ///< of a lookup that is not by the nearest one
+};
+
+/// The file of maps that have been read.
+Status indexed(const std::vector<IndexedMap>& maps, const IndexedOptions& options, IndexedFile& result,
+               const Control& control = {}) noexcept;
 
 /// The table of numbers that are floats already; `bad` says what they were.
 Status table(const build::Array& array, const BadNumbers& bad, const TableOptions& options, Table& result,

@@ -60,9 +60,11 @@ void take_projection(const Pixels& pixels, build::RepairedRows& repaired) {
     repaired.take_whole({pixels.projection, width, height}, std::move(rgb));
 }
 
-Target make(const TargetOptions& options, int threads, const build::Progress& progress,
-            const std::string& projection, const std::function<void(build::RepairedRows&)>& take) {
-    TargetRows rows(options, progress);
+/// What TargetRows, or IndexedMapRows, make of rows that `take` passes on.
+template <class RowsOf>
+auto make(const TargetOptions& options, int threads, const build::Progress& progress, const std::string& projection,
+          const std::function<void(build::RepairedRows&)>& take) {
+    RowsOf rows(options, progress);
     build::RepairedRows repaired({options.bad_texels, options.uniform_if_black, threads}, rows);
     take(repaired);
     if (options.bad_texels == BadTexelPolicy::error && repaired.bad().count() > 0)
@@ -70,6 +72,21 @@ Target make(const TargetOptions& options, int threads, const build::Progress& pr
                                     "; repair them, or choose to zero or clamp them");
     repaired.light_if_black();
     return rows.finish(repaired.bad(), projection);
+}
+
+template <class RowsOf>
+auto make_of_pixels(const Pixels& pixels, const TargetOptions& options, int threads,
+                    const build::Progress& progress) {
+    check(pixels);
+    check(options);
+    const auto read = [&](std::uint32_t first, std::uint32_t count, float* rgb) {
+        read_rows(pixels, first, count, rgb);
+    };
+    return make<RowsOf>(options, threads, progress, name_of(pixels.projection), [&](build::RepairedRows& repaired) {
+        if (pixels.projection != Projection::latlong) return take_projection(pixels, repaired);
+        take_latlong(pixels.width, pixels.height, read, options, threads, pixels.number == Number::float16,
+                     repaired);
+    });
 }
 
 template <class Image>
@@ -83,16 +100,12 @@ Status target_from(const Image& image, const TargetOptions& options, Target& tar
 
 Target make_target(const Pixels& pixels, const TargetOptions& options, int threads,
                    const build::Progress& progress) {
-    check(pixels);
-    check(options);
-    const auto read = [&](std::uint32_t first, std::uint32_t count, float* rgb) {
-        read_rows(pixels, first, count, rgb);
-    };
-    return make(options, threads, progress, name_of(pixels.projection), [&](build::RepairedRows& repaired) {
-        if (pixels.projection != Projection::latlong) return take_projection(pixels, repaired);
-        take_latlong(pixels.width, pixels.height, read, options, threads, pixels.number == Number::float16,
-                     repaired);
-    });
+    return make_of_pixels<TargetRows>(pixels, options, threads, progress);
+}
+
+IndexedMap make_indexed_map(const Pixels& pixels, const TargetOptions& options, int threads,
+                            const build::Progress& progress) {
+    return make_of_pixels<IndexedMapRows>(pixels, options, threads, progress);
 }
 
 Target make_target(const Rows& rows, const TargetOptions& options, int threads, const build::Progress& progress) {
@@ -107,9 +120,10 @@ Target make_target(const Rows& rows, const TargetOptions& options, int threads, 
         }
         if (!going_on) throw build::CallbackFailed();
     };
-    return make(options, threads, progress, name_of(Projection::latlong), [&](build::RepairedRows& repaired) {
-        take_latlong(rows.width, rows.height, read, options, threads, false, repaired);
-    });
+    return make<TargetRows>(options, threads, progress, name_of(Projection::latlong),
+                            [&](build::RepairedRows& repaired) {
+                                take_latlong(rows.width, rows.height, read, options, threads, false, repaired);
+                            });
 }
 
 const compress::Target& grid_of(const Target& target) { return target.data()->grid; }
@@ -134,6 +148,11 @@ Target target_of(compress::Target grid, const TargetOptions& options) {
     return held(std::move(data));
 }
 
+bool TargetRows::resamples(const build::Map& map) const {
+    const auto grid = grid_of(map), own = build::own_domain(map);
+    return !grid || !own || !(*grid == *own);
+}
+
 void TargetRows::set_luminance(const ChannelWeights& weights) {
     const ChannelWeights usual;
     ChannelWeights& asked = options_.channels.weights;
@@ -152,8 +171,7 @@ bool TargetRows::take_map(const build::Map& map, const std::vector<float>& rgb) 
 
 void TargetRows::begin(int width, int height) {
     map_ = {Projection::latlong, width, height, repeats(options_)};
-    const auto grid = grid_of(map_), own = build::own_domain(map_);
-    if (!grid || !own || !(*grid == *own)) {
+    if (resamples(map_)) {
         rgb_.resize(row() * static_cast<std::size_t>(height));
         return;
     }

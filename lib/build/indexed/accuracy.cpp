@@ -79,12 +79,12 @@ private:
 
 } // namespace
 
-IndexedAccuracy measure_mixed(const MixedEnvironment& environment, const SunMap& map) {
+builder::MapAccuracy measure_mixed(const MixedEnvironment& environment, const SunMap& map) {
     const MixedSummer summer(environment.data(), map);
     std::vector<RowSums> rows(map.target->rows);
     compress::parallel_for(std::uint32_t{0}, map.target->rows,
                            [&](std::uint32_t row) { summer.add_row(row, rows[row]); });
-    IndexedAccuracy out;
+    builder::MapAccuracy out;
     compress::Sum moment;
     double largest = 0.0;
     for (const RowSums& row : rows) {

@@ -3,21 +3,12 @@
 
 #include "build/indexed/sun.h"
 
+#include <acdf/accuracy.h>
 #include <acdf/views.h>
-
-#include <cstdint>
 
 namespace acdf::build {
 
-/// As in acdf/accuracy.h. By summation over texels; near the sun over 64 points of each.
-struct IndexedAccuracy {
-    double relative_variance = 0.0;
-    double max_weight = 0.0;
-    std::uint64_t support_violations = 0;
-    double total = 0.0; ///< of the map
-};
-
 /// The map is on the grid of the file.
-IndexedAccuracy measure_mixed(const MixedEnvironment& environment, const SunMap& map);
+builder::MapAccuracy measure_mixed(const MixedEnvironment& environment, const SunMap& map);
 
 } // namespace acdf::build

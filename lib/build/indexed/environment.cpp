@@ -6,7 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <set>
 #include <stdexcept>
+
+#include <zlib.h>
 
 namespace acdf::build {
 namespace {
@@ -23,22 +27,7 @@ std::vector<std::uint32_t> counts_of(const std::vector<MapAxis>& axes) {
     return out;
 }
 
-void check(const std::vector<SunMap>& maps, const IndexedOptions& options) {
-    if (options.axes.empty() || options.axes.size() > ACDF_MOST_INDEXED_AXES)
-        throw std::invalid_argument("maps have one to three axes");
-    for (const MapAxis& axis : options.axes) {
-        const std::vector<double>& at = axis.coordinates;
-        if (at.size() < 2) throw std::invalid_argument("axis " + axis.name + " needs two coordinates or more");
-        for (std::size_t i = 0; i < at.size(); ++i)
-            if (!std::isfinite(at[i]) || (i > 0 && !(at[i] > at[i - 1])))
-                throw std::invalid_argument("the coordinates of axis " + axis.name + " do not rise");
-    }
-    if (map_count(options.axes) != maps.size())
-        throw std::invalid_argument("there are " + std::to_string(maps.size()) + " maps, and the axes have " +
-                                    std::to_string(map_count(options.axes)));
-    if (!options.suns.empty() && options.suns.size() != maps.size())
-        throw std::invalid_argument("there are " + std::to_string(maps.size()) + " maps and " +
-                                    std::to_string(options.suns.size()) + " suns");
+void check_maps(const std::vector<SunMap>& maps) {
     for (const SunMap& map : maps) {
         const compress::Target &one = *maps[0].target, &other = *map.target;
         if (one.columns != other.columns || one.rows != other.rows ||
@@ -111,7 +100,50 @@ compress::IndexedTree fitted(const std::vector<SunMap>& maps, const Suns& suns, 
     });
 }
 
+/// Zeros stay.
+std::vector<SunDirection> unit_vectors(std::vector<SunDirection> directions) {
+    for (SunDirection& d : directions) {
+        const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        for (double& coordinate : d) coordinate = length > 0.0 ? coordinate / length : 0.0;
+    }
+    return directions;
+}
+
+/// Of coordinates too many to be spelled.
+std::string checksum_of(const std::vector<SunDirection>& suns) {
+    char text[16];
+    const auto crc = crc32_z(0, reinterpret_cast<const Bytef*>(suns.data()), suns.size() * sizeof suns[0]);
+    std::snprintf(text, sizeof text, "%08lx", static_cast<unsigned long>(crc));
+    return std::string("crc32:") + text;
+}
+
 } // namespace
+
+void check(const IndexedOptions& options, std::size_t maps) {
+    if (options.axes.empty() || options.axes.size() > ACDF_MOST_INDEXED_AXES)
+        throw OptionError("maps have one to three axes");
+    std::set<std::string> names = {"phi", "theta", "u", "v"};
+    for (const MapAxis& axis : options.axes) {
+        if (axis.name.empty() || axis.name.size() > 15 || !names.insert(axis.name).second)
+            throw OptionError("axis '" + axis.name +
+                              "': axes have different names of 1 to 15 bytes, none of phi, theta, u and v");
+        const std::vector<double>& at = axis.coordinates;
+        if (at.size() < 2) throw OptionError("axis " + axis.name + " needs two coordinates or more");
+        for (std::size_t i = 0; i < at.size(); ++i)
+            if (!std::isfinite(at[i]) || (i > 0 && !(at[i] > at[i - 1])))
+                throw OptionError("the coordinates of axis " + axis.name + " do not rise");
+    }
+    if (map_count(options.axes) != maps)
+        throw OptionError("there are " + std::to_string(maps) + " maps, and the axes have " +
+                          std::to_string(map_count(options.axes)));
+    if (!options.suns.empty() && (!options.sun || options.suns.size() != maps))
+        throw OptionError("there are " + std::to_string(maps) + " maps and " + std::to_string(options.suns.size()) +
+                          " suns" + (options.sun ? "" : ", and the sun is to be stored as any other light"));
+    for (const SunDirection& sun : options.suns)
+        for (const double coordinate : sun)
+            if (!(std::fabs(coordinate) <= 1e6))
+                throw OptionError("the direction of a sun is not finite or above 1e6");
+}
 
 std::string option_text(const IndexedOptions& options) {
     std::string text = options.reading + target_text(options.target) + codec_text(options.codec);
@@ -121,23 +153,24 @@ std::string option_text(const IndexedOptions& options) {
             text += (i ? "," : "") + option_number(axis.coordinates[i]);
         text += " ";
     }
-    if (!options.suns.empty()) text += "--sun ";
+    if (!options.suns.empty()) text += "--sun " + checksum_of(options.suns) + " ";
     else if (!options.sun) text += "--no-sun ";
     return text + "--budget " + std::to_string(options.budget);
 }
 
 IndexedEnvironmentFile build_indexed(const std::vector<SunMap>& maps, const Source& source,
                                      const IndexedOptions& options, const Progress& progress) {
-    check(maps, options);
+    check(options, maps.size());
+    check_maps(maps);
     const auto tell = [&](double share, const char* what) {
         if (progress) progress(share, what);
     };
-    Suns suns = options.suns.empty() && !options.sun
-                    ? no_suns(maps)
-                    : find_suns(maps, counts_of(options.axes), options.suns.empty() ? nullptr : &options.suns);
+    const std::vector<SunDirection> given = unit_vectors(options.suns);
+    Suns suns =
+        options.sun ? find_suns(maps, counts_of(options.axes), given.empty() ? nullptr : &given) : no_suns(maps);
     compress::Description description = description_of(maps, options);
     for (std::size_t i = 0; i < maps.size(); ++i)
-        suns.of_maps[i].share = static_cast<float>(maps[i].target->total / description.total);
+        suns.of_maps[i].share = compress::positive_float(maps[i].target->total / description.total);
     tell(0.1, "fitting");
     IndexedEnvironmentFile out;
     description.metadata = metadata_of(source, options, 0.0, 0.0);

@@ -70,6 +70,26 @@ private:
     EnvironmentView view_;
 };
 
+struct SkyFile {
+    const File& file;
+    MixedEnvironment view;
+    SkyFile(const File& f, const MixedEnvironment& v) : file(f), view(v) {}
+    std::uint64_t bytes() const { return memory_of(file); }
+};
+
+class SkyPoint final : public PointSampler {
+public:
+    explicit SkyPoint(const SkyFile& file) : view_(file.view) {}
+    void move_to(const ShadingPoint&) override {}
+    AcdfDirectionSample sample(double u0, double u1) const override {
+        return view_.sample(below_one(u0), below_one(u1));
+    }
+    float pdf(const float wi[3]) const override { return view_.pdf(wi); }
+
+private:
+    const MixedEnvironment& view_;
+};
+
 struct LocalFile {
     const File& file;
     LocalEnvironmentView view{file.local()};
@@ -253,6 +273,10 @@ LightSamplerPtr file_sampler(const File& file) {
     if (file.kind() == ACDF_KIND_LOCAL) return std::make_unique<MovedToPoints<LocalFile, LocalPoint>>(file, true);
     if (file.kind() == ACDF_KIND_BRDF) return std::make_unique<MovedToPoints<BrdfFile, BrdfFilePoint>>(file);
     throw std::invalid_argument("a table does not say what light it samples");
+}
+
+LightSamplerPtr sky_sampler(const File& file, const MixedEnvironment& sky) {
+    return std::make_unique<MovedToPoints<SkyFile, SkyPoint>>(file, sky);
 }
 
 LightSamplerPtr normals_alone_sampler(const File& file) {

@@ -66,6 +66,8 @@ std::uint64_t memory_of(const File& file);
 /// A file of an environment, a local environment or a BRDF; std::invalid_argument for tables. `bytes` is memory_of.
 /// BRDFs are turned to the surface's frame (surface_frame); views below the surface sample nothing.
 LightSamplerPtr file_sampler(const File& file);
+/// One of the environments of a file of several maps.
+LightSamplerPtr sky_sampler(const File& file, const MixedEnvironment& sky);
 /// A local environment by normals alone, also where it stores visibility cells.
 LightSamplerPtr normals_alone_sampler(const File& file);
 

@@ -9,14 +9,14 @@
     >>> bool(np.allclose(pdf, 1 / (4 * np.pi), rtol=1e-3))
     True
 
-`open` reads a file, the `build_...` functions make one from arrays. Both return an `Environment`, a `LocalEnvironment`, a
-`Brdf` or a `Table`. Directions are unit vectors in a right-handed frame with z up, pdfs are per steradian.
+`open` reads a file, the `build_...` functions make one from arrays. Both return an `Environment`, an `IndexedEnvironment`, a
+`LocalEnvironment`, a `Brdf` or a `Table`. Directions are unit vectors in a right-handed frame with z up, pdfs are per steradian.
 """
 
 from ._acdf import __version__, format_version
 from ._errors import BuildError, FileError
 from ._renderers import Renderer, renderers
-from .build import EnvironmentRebuilder, build_brdf, build_environment, build_local, build_table
+from .build import EnvironmentRebuilder, build_brdf, build_environment, build_indexed, build_local, build_table
 from .files import Brdf, Environment, File, IndexedEnvironment, LocalEnvironment, MixedEnvironment, Samples, Table, open
 
 __all__ = [
@@ -35,6 +35,7 @@ __all__ = [
     "__version__",
     "build_brdf",
     "build_environment",
+    "build_indexed",
     "build_local",
     "build_table",
     "format_version",

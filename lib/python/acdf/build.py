@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
-from typing import Any, Callable, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Mapping, Optional, Sequence, Tuple, Union
+
+import numpy as np
 
 from . import _acdf
-from .files import Brdf, Environment, LocalEnvironment, Table, open
+from .files import Brdf, Environment, IndexedEnvironment, LocalEnvironment, Table, open
 
 Size = Union[int, str]
 Progress = Callable[[float, str], Optional[bool]]
@@ -149,6 +151,54 @@ class EnvironmentRebuilder:
     def relative_variance(self) -> float:
         """Of one sample of the last frame."""
         return float(self._made.relative_variance())
+
+
+def build_indexed(
+    maps: Any,
+    axes: Mapping[str, Sequence[float]],
+    *,
+    budget: Optional[Size] = None,
+    sun: Union[bool, Any] = True,
+    projection: str = "latlong",
+    for_renderer: Optional[str] = None,
+    filter: Optional[str] = None,
+    wrap: Optional[str] = None,
+    channel: Optional[str] = None,
+    bad_texels: str = "zero",
+    uniform_if_black: bool = False,
+    compress: str = "none",
+    source_name: str = "",
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> IndexedEnvironment:
+    """One file of several maps of one size, such as the hours of a day. The default budget is 64 KiB.
+
+    maps: as many images as there are coordinates, each as build_environment takes it, lat-long or octahedral. With several axes
+        the last one changes fastest. Or one array of them all, whose leading shape is the lengths of the axes.
+    axes: names, and the coordinates of maps along each, which rise: {"time": [6, 9, 12], "turbidity": [2, 6]}. Up to three.
+    sun: True: a small region that is much brighter than all else is looked for, and a cone that moves between maps stands for
+        it. False: it is stored as any other light, and between maps there are two of it. Or an array of shape (maps, 3):
+        where it is in each map, zeros where it is not up.
+    Other options are those of build_environment.
+
+    >>> import acdf, numpy as np
+    >>> maps = [np.full((32, 64, 3), brightness) for brightness in (1, 2, 3)]
+    >>> day = acdf.build_indexed(maps, {"time": [6, 9, 12]}, budget="4KiB")
+    >>> day.axes, day.size <= 4096
+    (('time',), True)
+    >>> round(day.at(time=7.5).total / day.at(6).total, 4)
+    1.5
+    """
+    given = {k: v for k, v in locals().items() if k not in ("maps", "sun")}
+    given["axes"] = [(name, [float(x) for x in along]) for name, along in axes.items()]
+    counts = tuple(len(along) for _, along in given["axes"])
+    if isinstance(maps, np.ndarray) and maps.shape[: len(counts)] == counts:
+        maps = [maps[i] for i in np.ndindex(*counts)]
+    if isinstance(sun, (bool, np.bool_)):
+        given["sun"] = bool(sun)
+    else:
+        given["suns"] = np.asarray(sun, np.float64).reshape(-1, 3).tolist()
+    return open(_acdf.build_indexed(list(maps), _options(given)))
 
 
 def build_local(

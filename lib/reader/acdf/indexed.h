@@ -101,10 +101,13 @@ ACDF_FN uint32_t acdf_index_before(const double* coordinates, uint32_t count, do
         else high = middle;
     }
     *between = (at - coordinates[low]) / (coordinates[low + 1u] - coordinates[low]);
+    if (!(coordinates[low + 1u] - coordinates[low] < 1.7976931348623157e308)) /* doubles hold halves of them */
+        *between = (0.5 * at - 0.5 * coordinates[low]) / (0.5 * coordinates[low + 1u] - 0.5 * coordinates[low]);
     return low;
 }
 
-/* The direction of a sun between two, along the great circle; where one is not known, the other. */
+/* The direction of a sun between two, along the great circle; where one is not known, the other. `out` may be `a`.
+ */
 ACDF_FN void acdf_between_suns(const double a[3], const double b[3], double t, double out[3]) {
     const double cosine = acdf_cone_dot(a, b);
     double cross[3], sine, angle, of_a, of_b, unused, length;
@@ -113,8 +116,8 @@ ACDF_FN void acdf_between_suns(const double a[3], const double b[3], double t, d
     sine = sqrt(acdf_cone_dot(cross, cross));
     angle = acdf_atan2pi(sine, cosine);
     if (sine < 1e-9) { /* alike, or opposite: nothing is between */
-        for (i = 0; i < 3; ++i)
-            out[i] = (acdf_cone_dot(a, a) > 0.0 && (t < 0.5 || !(acdf_cone_dot(b, b) > 0.0))) ? a[i] : b[i];
+        const double* one = acdf_cone_dot(a, a) > 0.0 && (t < 0.5 || !(acdf_cone_dot(b, b) > 0.0)) ? a : b;
+        for (i = 0; i < 3; ++i) out[i] = one[i];
         return;
     }
     acdf_sincospi((1.0 - t) * angle, &of_a, &unused);

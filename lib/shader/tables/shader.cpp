@@ -31,7 +31,7 @@ ShaderTables& ShaderTables::operator=(ShaderTables&& other) noexcept {
 
 Status ShaderTables::make(const File& file, ShaderTables& out) noexcept {
     out = ShaderTables();
-    if (file.kind() == ACDF_KIND_TABLE || file.kind() == ACDF_KIND_INDEXED)
+    if (file.kind() == ACDF_KIND_TABLE)
         return none("it is neither an environment nor a local environment nor a BRDF");
     if (file.kind() == ACDF_KIND_LOCAL && file.local().data().rows_of_normals)
         return none("shaders do not read local environments of halvings; make the file with --shape small or fast");

@@ -3,6 +3,7 @@
 
 #include "memory.h"
 #include "shader/tables/walk_cells.h"
+#include "shader/tables/walk_maps.h"
 #include "shader/tables/walk_tiles.h"
 
 #include <algorithm>
@@ -23,6 +24,13 @@ AcdfLocal local_of(const File& file) {
         local.environment = file.environment().data();
         return local;
     }
+    if (file.kind() == ACDF_KIND_INDEXED) {
+        const AcdfIndexed maps = file.indexed().data();
+        local.environment.columns = maps.columns;
+        local.environment.rows = maps.rows;
+        local.environment.parameterization = maps.parameterization;
+        return local;
+    }
     const AcdfBrdf brdf = file.brdf().data();
     local.environment.tree = brdf.tree;
     local.environment.columns = brdf.columns;
@@ -37,11 +45,15 @@ AcdfLocal local_of(const File& file) {
 class WalkMaker {
 public:
     explicit WalkMaker(const File& file)
-        : file_(file), local_(local_of(file)), environment_(local_.environment),
+        : file_(file), local_(local_of(file)), environment_(local_.environment), indexed_(file.indexed().data()),
+          nodes_(environment_.halved ? acdf_halvings_nodes(environment_.halved)
+                 : indexed_.top      ? ACDF_TOP_ARRAY(AcdfHalving, indexed_.top, indexed_.top->nodes)
+                                     : nullptr),
           cells_(environment_.parameterization, environment_.columns, environment_.rows),
           most_leaves_(2 * std::size_t{file.tree_units()} + 64 +
                        (local_.blend.tiles ? local_.blend.tiles->tile_count : 0) +
-                       (environment_.halved ? environment_.halved->count : 0)) {}
+                       (environment_.halved ? environment_.halved->count : 0) +
+                       (indexed_.top ? indexed_.top->top - indexed_.top->nodes : 0)) {}
 
     bool make();
     bool assemble(AcdfBlock& block) const;
@@ -60,6 +72,8 @@ private:
     u32 tree(const std::uint8_t* tree, u32 root, const Cell& box, u32 light);
     u32 halvings(u32 at, const AcdfSpan* steps, const Cell& box);
     u32 environment();
+    u32 tile(u32 at);
+    u32 top(u32 at);
     u32 curve(const Divided& divided, const AcdfCurve& curve, u32 first, u32 last);
     u32 splits(u32 node, const Cell& box);
     u32 leaf(const Cell& cell, u32 light);
@@ -70,12 +84,15 @@ private:
     const File& file_;
     AcdfLocal local_;
     AcdfEnvironment environment_;
+    AcdfIndexed indexed_;
+    const AcdfHalving* nodes_; // of the tree, if it is one of halvings
     WalkCells cells_;
     std::size_t most_leaves_, leaves_ = 0;
     bool failed_ = false;
     WalkParts parts_;
     Growable<u32> bins_, views_, light_links_, tree_links_;
     WalkTiles tiles_;
+    WalkMaps maps_;
     u32 root_ = ACDF_WALK_NONE, mixture_ = ACDF_WALK_NONE;
 };
 
@@ -100,7 +117,7 @@ u32 WalkMaker::tree(const std::uint8_t* tree, u32 root, const Cell& box, u32 lig
 
 // A node of halvings, the box of it and the random numbers that lead there. A path passes at most 62 halvings.
 u32 WalkMaker::halvings(u32 at, const AcdfSpan* steps, const Cell& box) {
-    const AcdfHalving node = acdf_halvings_nodes(environment_.halved)[at];
+    const AcdfHalving node = nodes_[at];
     const u32 axis = node.link & 7u, middle = (box.first[axis] + box.last[axis]) / 2;
     const u32 wide[2] = {node.threshold - steps[axis].end[0], steps[axis].end[1] - node.threshold};
     const u32 made = this->node(axis, middle, chance_of(wide[0], wide[1]));
@@ -127,6 +144,32 @@ u32 WalkMaker::environment() {
     const AcdfSpan steps[2] = {{{0, ACDF_STEPS}}, {{0, ACDF_STEPS}}};
     if (!halved) return tree(environment_.tree, environment_.root, cells_.whole(), 0);
     return halved->count ? halvings(0, steps, cells_.whole()) : leaf(cells_.whole(), 0);
+}
+
+// What maps share.
+u32 WalkMaker::tile(u32 at) {
+    const AcdfTopTile& tile = ACDF_TOP_ARRAY(AcdfTopTile, indexed_.top, indexed_.top->tiles)[at];
+    Cell box = cells_.whole();
+    for (u32 axis = 0; axis < 2; ++axis) {
+        box.first[axis] = tile.box[axis].end[0];
+        box.last[axis] = tile.box[axis].end[1];
+    }
+    return tile.node == ACDF_LEAF ? leaf(box, 0) : halvings(tile.node, tile.steps, box);
+}
+
+// A split of several maps, and what is below. A path passes at most 62.
+u32 WalkMaker::top(u32 at) {
+    const AcdfTopSplit& split = ACDF_TOP_ARRAY(AcdfTopSplit, indexed_.top, indexed_.top->top)[at];
+    const u32 made = node(split.axis, split.middle, ACDF_WALK_SPLIT | at);
+    u32 links[2] = {};
+    for (u32 upper = 0; upper < 2 && !failed_; ++upper) {
+        const u32 child = split.child[upper];
+        links[upper] = child & ACDF_TOP_TILE ? tile(child & ~ACDF_TOP_TILE) : top(child);
+    }
+    if (failed_) return ACDF_WALK_LEAF;
+    parts_.nodes[made].lower = links[0];
+    parts_.nodes[made].upper = links[1];
+    return made;
 }
 
 // Segments [first, last) of a curve, which are halved. A path passes at most 64 curves.
@@ -234,6 +277,10 @@ bool WalkMaker::make() {
     parts_.add(WalkLeaf{0, 0.0f, {}}); // what is dark
     if (!cells_.remember(most_leaves_)) return false;
     if (local_.bright_tile_count > 0 && !light_links_.add(local_.bright_tile_count, ACDF_WALK_LEAF)) return false;
+    if (indexed_.top) {
+        mixture_ = indexed_.top->splits ? top(0) : tile(0);
+        return !failed_ && maps_.make(indexed_);
+    }
     if (!brdf()) root_ = environment();
     if (local_.fast.grid) {
         mixture_ = ACDF_WALK_ON_GRIDS;
@@ -251,7 +298,7 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     const std::size_t codes = coded ? 512 : 0, bright_tiles = 8 * std::size_t{local_.bright_tile_count};
     const std::size_t words = ACDF_WALK_HEADER_WORDS +
                               (parts_.nodes.bytes() + parts_.leaves.bytes() + bins_.bytes() + views_.bytes()) / 4 +
-                              codes + bright_tiles + rows / 4 + 1 + tiles_.words();
+                              codes + bright_tiles + rows / 4 + 1 + tiles_.words() + maps_.words();
     if (rows > 0xFFFFFFFFu || words > 0x3FFFFFFFu) return false;
     block = take_block({}, 4 * words);
     if (!block.data) return false;
@@ -303,6 +350,7 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     }
     place(ACDF_WALK_CODE_ROWS, local_.blend.rows, rows);
     if (local_.fast.grid) tiles_.place(local_, out, at);
+    if (indexed_.top) maps_.place(out, at);
     return true;
 }
 

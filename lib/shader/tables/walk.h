@@ -1,4 +1,4 @@
-// Makes the words of acdf/shader/walk.h and acdf/shader/brdf.h.
+// Makes the words of acdf/shader/walk.h, acdf/shader/maps.h and acdf/shader/brdf.h.
 #pragma once
 
 #include <acdf/allocator.h>

@@ -56,6 +56,20 @@ double mixed(const IndexedSpec& spec, double time, bool right, bool lower) {
     return (a * quarter(spec, 0, right, lower) + b * quarter(spec, 1, right, lower)) / (a + b);
 }
 
+TEST(Indexed, whereOneSunIsNotKnownTheOtherStands) {
+    for (const std::size_t unknown : {0u, 1u}) {
+        IndexedSpec spec;
+        const MapSpec known = spec.maps[1 - unknown];
+        spec.maps[unknown] = {spec.maps[unknown].share, 0.0f, 0.0f, {0.0f, 0.0f, 0.0f}, spec.maps[unknown].codes};
+        const Opened file(spec);
+        for (const double time : {7.0, 12.0, 17.0}) {
+            const acdf::MixedEnvironment sky = file.view().at(time);
+            for (int i = 0; i < 3; ++i) EXPECT_EQ(sky.data().cone.axis[i], double{known.sun[i]}) << time;
+            EXPECT_NEAR(sky.data().cone.reach, 1.0 - std::cos(double{known.radius}), 1e-12) << time;
+        }
+    }
+}
+
 TEST(Indexed, mixesMapsByTheirLight) {
     const IndexedSpec spec = dull();
     const Opened opened(spec);

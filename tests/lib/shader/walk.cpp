@@ -188,7 +188,8 @@ TEST(ShaderTraversal, AnswersAsTheReaderOnGoldenFiles) {
     int files = 0;
     each_golden_file([&](std::vector<std::uint8_t> bytes) {
         const WalkedFile file(std::move(bytes));
-        if (!file.status.ok() || file.file.kind() == ACDF_KIND_BRDF) return;
+        if (!file.status.ok() || file.file.kind() == ACDF_KIND_BRDF || file.file.kind() == ACDF_KIND_INDEXED)
+            return;
         ++files;
         compare_walk(file, file.local() ? 200 : 1, file.local() ? 10 : 2000);
     });

@@ -68,6 +68,41 @@ TEST_F(BatchCommand, SkipsWhatIsUpToDateAndSaysWhyTheRestIsNot) {
     EXPECT_EQ(report(forced)["done"], 6);
 }
 
+/// As often as nothing has changed it is skipped.
+TEST_F(BatchCommand, MakesOneFileOfSeveralMaps) {
+    write_small_probes(probes, 4);
+    const std::string one = folder / "one.acdf";
+    std::vector<std::string> env = {"env"};
+    for (int i = 0; i < 4; ++i) env.push_back(probes + "/probe00" + std::to_string(i) + ".pfm");
+    env.insert(env.end(), {"-o", one, "--budget", "3KiB", "--axis", "x=1,2", "--axis", "y=3,4"});
+    ASSERT_EQ(run_acdf(env).code, 0);
+    const std::string
+        line = "{\"maps\": [\"probes/probe000.pfm\", \"probes/probe001.pfm\", \"probes/probe002.pfm\", "
+               "\"probes/probe003.pfm\"], \"output\": \"a/maps.acdf\", \"options\": {\"budget\": \"3KiB\", "
+               "\"axis\": [\"x=1,2\", \"y=3,4\"]}}\n",
+        frames = "{\"maps\": [\"probes/probe###.pfm\"], \"output\": \"frames.acdf\"}\n";
+    write_text(manifest, line + frames);
+    EXPECT_EQ(report({manifest, "--gallery"})["done"], 2);
+    EXPECT_EQ(read_text(out + "/a/maps.acdf"), read_text(one));
+    EXPECT_NE(read_text(out + "/gallery.html").find("pdf of a/maps.acdf, its first map"), std::string::npos);
+    const Files made = files_in(out);
+    EXPECT_EQ(report({manifest})["up_to_date"], 2);
+
+    write_small_probe(probes + "/probe002.pfm", 99);
+    for (const json& job : report({manifest, "--dry-run"})) EXPECT_EQ(job["reason"], "its source changed");
+    write_small_probe(probes + "/probe002.pfm", 2);
+    write_small_probe(probes + "/probe004.pfm", 4); // a frame more
+    EXPECT_EQ(report({manifest, "--dry-run"})[1]["reason"].get<std::string>().find("its options changed"), 0u);
+    fs::remove(probes + "/probe004.pfm");
+
+    ASSERT_EQ(batch({manifest, "--emit", "ninja"}).code, 0);
+    if (std::system("command -v ninja >/dev/null") != 0) return;
+    fs::remove_all(out + "/a");
+    EXPECT_EQ(std::system(("ninja -C '" + out + "' a/maps.acdf >'" + (folder / "log") + "'").c_str()), 0)
+        << read_text(folder / "log");
+    EXPECT_EQ(read_text(out + "/a/maps.acdf"), made.at("a/maps.acdf"));
+}
+
 TEST_F(BatchCommand, OptionsAreComparedAsMeantNotAsSpelled) {
     write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
     EXPECT_EQ(report({probes, "--set", "env.budget=2KiB"})["done"], 1);

@@ -48,6 +48,16 @@ TEST(BatchManifest, ReadsAllMembersOfALine) {
     EXPECT_EQ(*manifest.jobs[1].options, (std::vector<std::string>{"--budget", "2MB"}));
 }
 
+TEST(BatchManifest, ReadsSeveralMapsAndOptionsThatAreGivenSeveralTimes) {
+    const Manifest manifest = parse_manifest("{\"maps\": [\"a.exr\", \"day.##.exr\"], \"output\": \"day.acdf\", "
+                                             "\"options\": {\"axis\": [\"x=1,2\", \"y=3,4\"], \"sun\": []}}");
+    ASSERT_TRUE(manifest.errors.empty()) << manifest.errors[0].what;
+    const ManifestJob& job = manifest.jobs.at(0);
+    EXPECT_EQ(job.source, "");
+    EXPECT_EQ(job.maps, (std::vector<std::string>{"a.exr", "day.##.exr"}));
+    EXPECT_EQ(*job.options, (std::vector<std::string>{"--axis=x=1,2", "--axis=y=3,4"}));
+}
+
 TEST(BatchManifest, ReportsWhatIsWrongWithALine) {
     const std::pair<const char*, const char*> cases[] = {
         {"{\"source\": \"a\", \"sauce\": 1}", "unknown key 'sauce'"},
@@ -62,6 +72,11 @@ TEST(BatchManifest, ReportsWhatIsWrongWithALine) {
         {"{\"source\": \"a\", \"source\": \"b\"}", "'source' twice"},
         {"{\"source\": \"a\", \"options\": {\"x\": 1, \"x\": 2}}", "'x' twice"},
         {"{\"kind\": \"env\"}", "no 'source'"},
+        {"{\"source\": \"a\", \"maps\": [\"b\", \"c\"], \"output\": \"d.acdf\"}", "'source' and 'maps'"},
+        {"{\"maps\": [\"b\", \"c\"]}", "no 'output'"},
+        {"{\"maps\": []}", "'maps' must be an array"},
+        {"{\"maps\": \"day.##.exr\"}", "'maps' must be an array"},
+        {"{\"maps\": [1]}", "'maps' must be a string"},
         {"{\"source\": \"\"}", "'source' is empty"},
         {"{\"source\": \"a\\u0000b\"}", "control character"},
         {"[\"a\"]", "must be an object, not array"},

@@ -30,6 +30,12 @@ TEST_F(BatchCommand, RefusesManifestsBeforeAnythingStarts) {
                    at2 + "options of env: ");
     expect_refused(good + "{\"source\": \"probes/a.pfm\", \"kind\": \"local\", \"options\": {\"shape\": true}}\n",
                    at2 + "options of local: --shape: needs a value");
+    const std::string two = "{\"maps\": [\"probes/a.pfm\", \"probes/a.pfm\"], \"output\": \"m.acdf\"";
+    expect_refused(good + two + "}\n",
+                   at2 + "options of env: several maps in one file are for env, and need an axis");
+    expect_refused(good + two + ", \"options\": {\"axis\": \"time=1,2,3\"}}\n", at2 + "options of env: --axis");
+    expect_refused(good + two + ", \"kind\": \"local\"}\n", at2 + "options of local: several maps");
+    expect_refused(good + "{\"maps\": [\"probes/a.##.pfm\"], \"output\": \"m.acdf\"}\n", at2);
     expect_refused("\n", "has no jobs");
 }
 

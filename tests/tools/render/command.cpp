@@ -263,5 +263,28 @@ TEST_F(RenderCommand, TakesFiles) {
     EXPECT_EQ(json["samplers"][1]["bytes"], bytes + tables) << "what a renderer's memory holds";
 }
 
+TEST_F(RenderCommand, TakesTheSkyAtCoordinates) {
+    const std::string probe = folder / "probe.pfm";
+    ASSERT_EQ(run_acdf({"env", probe, "-o", folder / "sky.acdf", "--budget", "4KiB", "-q"}).code, 0);
+    const Result made =
+        run_acdf({"env", probe, probe, "-o", folder / "day.acdf", "--axis", "time=6,18", "--budget", "4KiB"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    const std::vector<std::string> samplers = {"--sampler",     "file:sky.acdf", "--sampler",
+                                               "file:day.acdf", "--json",        "--no-timing"};
+    std::vector<std::string> at = samplers;
+    at.insert(at.end(), {"--at", "time=9"});
+    const Result result = render_once("out", at);
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json json = Json::parse(result.out);
+    const double own = json["samplers"][0]["relative_variance"]["value"],
+                 day = json["samplers"][1]["relative_variance"]["value"];
+    EXPECT_GT(day, 0.3 * own);
+    EXPECT_LT(day, 3.0 * own);
+    EXPECT_LT(std::fabs(json["samplers"][1]["bias_standard_errors"].get<double>()), 5.0);
+    const Result refused = render_once("none", samplers);
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_NE(refused.err.find("choose with --at time=VALUE"), std::string::npos) << refused.err;
+}
+
 } // namespace
 } // namespace acdf::test

@@ -10,7 +10,7 @@
 #ifndef ACDF_SHADER_BRDF_H
 #define ACDF_SHADER_BRDF_H
 
-#include <acdf/shader/walk.h>
+#include <acdf/shader/maps.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -43,6 +43,7 @@ extern "C" {
 #define ACDF_WALK_AZIMUTHS 19u   /* of each of them; bins are numbered elevation by elevation; 0: no BRDF */
 #define ACDF_WALK_MIRRORED 20u   /* 1: azimuths of half-vectors are folded */
 #define ACDF_WALK_FAST 21u       /* 1: what bins share has the fast shape (acdf/shader/tiles.h) */
+#define ACDF_WALK_MAPS 22u       /* of several maps (acdf/shader/maps.h); 0: there are none */
 #define ACDF_WALK_ZERO 31u       /* is 0, which no compiler knows */
 #define ACDF_WALK_HEADER_WORDS 32u
 

@@ -52,26 +52,31 @@ ACDF_FN5(ACDF_F32, acdf_walk_combined_pdf, AcdfShaderPoint, here, ACDF_F32, ligh
     return (1.0f - here.cosine) * light + here.cosine * cosine * 0.31830989f;
 }
 
+/* The keys of a direction on the grid of the tables. */
+ACDF_FN2(AcdfDirectionKeys, acdf_walk_keys, ACDF_TABLES, tables, AcdfUnit, d) {
+    ACDF_VAR(AcdfDirectionKeys, place);
+    if (ACDF_WORD(tables, ACDF_WALK_OCTAHEDRAL) != 0u) {
+        return acdf_square_keys(d.x, d.y, d.z, d.sin2, d.length2);
+    }
+    place = acdf_direction_keys(d.x, d.y, d.z, d.sin2, d.length2);
+    ACDF_LET(ACDF_U32, cap) = ACDF_BITS(place.cap);
+    place.key0 = (ACDF_WALK_SEAM - place.key0) & ACDF_DIRECTION_MASK;
+    place.key1 = ACDF_SELECT((ACDF_BITS(d.z) >> 31u) != 0u, ACDF_WALK_SOUTH - cap, cap);
+    return place;
+}
+
 /* The pdf, per steradian, with which acdf_walk_sample samples a direction (unit) at a point. 0 where none falls,
  * and for directions whose length differs from 1 by more than 5e-4 or that are not finite. */
 ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_F32, x, ACDF_F32, y, ACDF_F32,
          z) {
     ACDF_LET(AcdfUnit, d) = acdf_unit_of(x, y, z);
-    ACDF_VAR(AcdfDirectionKeys, place);
     if (here.mix.root == ACDF_WALK_NONE || d.length2 == 0.0f) {
         return 0.0f;
     }
     if (acdf_tiles_serve(tables, here) != 0u) {
         return acdf_walk_combined_pdf(here, acdf_tiles_pdf(tables, here, d), x, y, z);
     }
-    if (ACDF_WORD(tables, ACDF_WALK_OCTAHEDRAL) != 0u) {
-        place = acdf_square_keys(d.x, d.y, d.z, d.sin2, d.length2);
-    } else {
-        place = acdf_direction_keys(d.x, d.y, d.z, d.sin2, d.length2);
-        ACDF_LET(ACDF_U32, cap) = ACDF_BITS(place.cap);
-        place.key0 = (ACDF_WALK_SEAM - place.key0) & ACDF_DIRECTION_MASK;
-        place.key1 = ACDF_SELECT((ACDF_BITS(z) >> 31u) != 0u, ACDF_WALK_SOUTH - cap, cap);
-    }
+    ACDF_LET(AcdfDirectionKeys, place) = acdf_walk_keys(tables, d);
     return acdf_walk_combined_pdf(
         here, acdf_walk_bright_tile_pdf(tables, here, acdf_walk_find(tables, here.mix, place.key0, place.key1)), x,
         y, z);
@@ -99,21 +104,24 @@ ACDF_FN2(AcdfVector, acdf_walk_direction, ACDF_TABLES, tables, AcdfWalkEnd, end)
     return acdf_piece_direction(along, height, flags & 3u, south);
 }
 
+/* The direction h along a unit axis, p and q across it. */
+ACDF_FN4(AcdfVector, acdf_walk_about, AcdfVector, axis, ACDF_F32, p, ACDF_F32, q, ACDF_F32, h) {
+    ACDF_LET(ACDF_F32, sign) = ACDF_SELECT(axis.z < 0.0f, -1.0f, 1.0f);
+    ACDF_LET(ACDF_F32, a) = -1.0f / (sign + axis.z);
+    ACDF_LET(ACDF_F32, b) = axis.x * axis.y * a;
+    ACDF_VAR(AcdfVector, d);
+    d.x = p * (1.0f + sign * axis.x * axis.x * a) + q * b + h * axis.x;
+    d.y = p * (sign * b) + q * (sign + axis.y * axis.y * a) + h * axis.y;
+    d.z = p * (-sign * axis.x) - q * axis.y + h * axis.z;
+    return d;
+}
+
 /* A direction around a unit normal with pdf cos / pi: acdf_cosine_direction. */
 ACDF_FN3(AcdfVector, acdf_walk_cosine, AcdfShaderPoint, here, ACDF_F32, u0, ACDF_F32, u1) {
     ACDF_LET(ACDF_F32, h) = ACDF_SQRT(ACDF_MAX(1.0f - u1, 1e-10f));
     ACDF_LET(ACDF_F32, r) = ACDF_SQRT(ACDF_MAX(1.0f - h * h, 0.0f));
     ACDF_LET(AcdfVector, turned) = acdf_turn(u0); /* from phi = -pi up, as acdf_cosine_direction turns */
-    ACDF_LET(ACDF_F32, p) = r * turned.x;
-    ACDF_LET(ACDF_F32, q) = r * turned.y;
-    ACDF_LET(ACDF_F32, sign) = ACDF_SELECT(here.z < 0.0f, -1.0f, 1.0f);
-    ACDF_LET(ACDF_F32, a) = -1.0f / (sign + here.z);
-    ACDF_LET(ACDF_F32, b) = here.x * here.y * a;
-    ACDF_VAR(AcdfVector, d);
-    d.x = p * (1.0f + sign * here.x * here.x * a) + q * b + h * here.x;
-    d.y = p * (sign * b) + q * (sign + here.y * here.y * a) + h * here.y;
-    d.z = p * (-sign * here.x) - q * here.y + h * here.z;
-    return d;
+    return acdf_walk_about(acdf_vector(here.x, here.y, here.z), r * turned.x, r * turned.y, h);
 }
 
 /* Samples a bright tile: its link becomes the end's leaf. */

@@ -11,7 +11,6 @@
 
 #include <cmath>
 #include <random>
-#include <stdexcept>
 
 using namespace acdf_test;
 
@@ -174,21 +173,6 @@ TEST(Morning, aSunThatIsNotOneMovesIntoTwo) {
     EXPECT_LT(cone.variance(cone.file.indexed().at(8.5), between), 2.0);
     EXPECT_GT(smeared.variance(smeared.file.indexed().at(8.5), between),
               10.0 * cone.variance(cone.file.indexed().at(8.5), between));
-}
-
-TEST(Morning, refusesWhatDoesNotFitTogether) {
-    acdf::build::IndexedOptions options = along("time", {7.0, 8.0, 9.0, 10.0});
-    std::vector<SkyMap> maps = morning(64);
-    options.budget = 512;
-    EXPECT_THROW(SkyFile(maps, options), std::runtime_error);
-    options.budget = 16 << 10;
-    maps[2] = day_map(32, 9.0, 3.0);
-    EXPECT_THROW(SkyFile(maps, options), std::invalid_argument);
-    maps.pop_back();
-    EXPECT_THROW(SkyFile(maps, options), std::invalid_argument);
-    maps = morning(64);
-    options.axes[0].coordinates = {7.0, 9.0, 8.0, 10.0};
-    EXPECT_THROW(SkyFile(maps, options), std::invalid_argument);
 }
 
 } // namespace

@@ -104,11 +104,28 @@ TEST(Suns, areWhereTheyAreGiven) {
     EXPECT_EQ(suns.of_maps[1].sun_share, 0.0f);
 }
 
-/// A map that is turned by columns and rescaled: what one sees of it does not flicker, at its frames and between.
-TEST(Suns, turnedMapDoesNotFlicker) {
-    constexpr int width = 256, frames = 9;
+/// What one sees of a map that changes does not flicker, at its frames and `step` between them.
+void expect_no_flicker(int frames, double step, const std::function<SkyMap(double frame)>& map) {
     std::vector<SkyMap> maps;
     std::vector<double> times;
+    for (int frame = 0; frame < frames; ++frame) {
+        maps.push_back(map(frame));
+        times.push_back(frame);
+    }
+    const SkyFile file(maps, along("frame", times));
+    double before = 0.0;
+    for (double frame = 0.0; frame <= frames - 1; frame += step) {
+        const double variance = file.variance(file.file.indexed().at(frame), map(frame));
+        if (before > 0.0) {
+            EXPECT_NEAR(variance / before, 1.0, 0.15) << frame;
+        }
+        before = variance;
+    }
+}
+
+/// By columns.
+TEST(Suns, turnedAndRescaledMapDoesNotFlicker) {
+    constexpr int width = 256;
     const std::vector<float> rgb = clear_sky::latlong(day_sky(9.0, 3.0), width);
     const auto turned = [&](double frame) {
         std::vector<float> out;
@@ -118,19 +135,12 @@ TEST(Suns, turnedMapDoesNotFlicker) {
         }
         return sky_map(out, width);
     };
-    for (int frame = 0; frame < frames; ++frame) {
-        maps.push_back(turned(frame));
-        times.push_back(frame);
-    }
-    const SkyFile file(maps, along("frame", times));
-    double before = 0.0;
-    for (double frame = 0.0; frame <= frames - 1; frame += 0.5) {
-        const double variance = file.variance(file.file.indexed().at(frame), turned(frame));
-        if (before > 0.0) {
-            EXPECT_NEAR(variance / before, 1.0, 0.15) << frame;
-        }
-        before = variance;
-    }
+    expect_no_flicker(9, 0.5, turned);
+}
+
+/// From a clear sky to a hazy one: its sun loses half of its light, and the sky about it gains some.
+TEST(Suns, mapWhoseContentChangesDoesNotFlicker) {
+    expect_no_flicker(5, 0.25, [](double frame) { return day_map(128, 9.0, 2.0 + frame); });
 }
 
 } // namespace
