@@ -31,6 +31,7 @@ Target map_of(std::uint32_t columns, std::uint32_t rows, AcdfParameterization pa
     Target out = compress::empty_target(columns, rows, parameterization);
     out.values.resize(std::size_t{columns} * rows);
     for (std::size_t i = 0; i < out.values.size(); ++i) out.values[i] = light(i);
+    out.total = compress::integral(out);
     return out;
 }
 
@@ -99,7 +100,9 @@ TEST(HalvedLocalFiles, OfFewNormals) {
 
 /// The variance that the fit expects at normals between bins is what random normals have.
 TEST(HalvedLocalFiles, KnowTheirVariance) {
-    const Target target = sky(256, 128);
+    std::mt19937 random(6);
+    std::lognormal_distribution<float> noise(0.0f, 1.0f);
+    const Target target = map_of(256, 128, ACDF_PARAM_LATLONG, [&](std::size_t) { return noise(random); });
     const compress::NormalBins bins = compress::octahedral_bins(7);
     compress::LocalHalvingsFitter fitter(target, compress::octahedral_bins(8), {});
     compress::LocalHalvingsSize size;
@@ -109,7 +112,7 @@ TEST(HalvedLocalFiles, KnowTheirVariance) {
     build::LocalOptions options = of_budget(60000 + 4096);
     options.subdivisions = 7;
     const double measured = expect_made(target, options, "sky").accuracy.relative_variance;
-    EXPECT_NEAR(measured, expected, 0.15 * expected);
+    EXPECT_NEAR(measured, expected, 0.2 * expected);
 }
 
 TEST(HalvedLocalFiles, AreTheSameOfAnyNumberOfThreads) {
