@@ -98,23 +98,6 @@ TEST(HalvedLocalFiles, OfFewNormals) {
     EXPECT_FALSE(file.local().stored(down));
 }
 
-/// The variance that the fit expects at normals between bins is what random normals have.
-TEST(HalvedLocalFiles, KnowTheirVariance) {
-    std::mt19937 random(6);
-    std::lognormal_distribution<float> noise(0.0f, 1.0f);
-    const Target target = map_of(256, 128, ACDF_PARAM_LATLONG, [&](std::size_t) { return noise(random); });
-    const compress::NormalBins bins = compress::octahedral_bins(7);
-    compress::LocalHalvingsFitter fitter(target, compress::octahedral_bins(8), {});
-    compress::LocalHalvingsSize size;
-    size.bytes = 60000;
-    size.top = fitter.top_for(60000.0, bins, size.code_bits);
-    const double expected = fitter.fit(bins, size, {}).relative_variance;
-    build::LocalOptions options = of_budget(60000 + 4096);
-    options.subdivisions = 7;
-    const double measured = expect_made(target, options, "sky").accuracy.relative_variance;
-    EXPECT_NEAR(measured, expected, 0.2 * expected);
-}
-
 TEST(HalvedLocalFiles, AreTheSameOfAnyNumberOfThreads) {
     const Target target = sky(128, 64);
     for (const AcdfPartnerKind kind : {ACDF_PARTNER_NONE, ACDF_PARTNER_COSINE}) {
