@@ -235,7 +235,7 @@ void LocalHalvingsFitter::mixed(const RowTree& tree, const std::vector<HalvedNod
     const MixedRows rows(light, tiles, bins);
     RowParts parts = rows.parts();
     code(tree, bins, parts, out);
-    out.relative_variance = rows.variance(parts);
+    out.mixing_variance = rows.variance(parts);
 }
 
 void LocalHalvingsFitter::filled(const RowTree& tree, const std::vector<HalvedNode>& nodes, const NormalBins& bins,

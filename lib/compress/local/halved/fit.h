@@ -31,7 +31,7 @@ struct LocalHalvings {
     std::vector<std::uint32_t> roots;       ///< one a bin: its row, or ACDF_NO_ROOT
     std::vector<float> shares;              ///< one a bin: its light over that of the probe
     std::vector<AcdfPartnerRecord> records; ///< beside an MIS partner: one a bin
-    double relative_variance = 0.0;         ///< of a sample, mean over normals between bins: as the fit sees it
+    double mixing_variance = 0.0; ///< what mixed rows add to those that suit each normal, mean over normals
 };
 
 /// Chunk NORM.

@@ -22,7 +22,8 @@ public:
 
     /// A part is positive wherever the bin sees light of the tile; their sum is what the bin's light costs.
     RowParts parts() const;
-    /// Relative variance of a sample, mean over the mixtures, of rows that give tiles so much each.
+    /// What mixing adds to the relative variance of a sample, mean over mixtures, where rows give tiles so much
+    /// each.
     double variance(const RowParts& rows) const;
 
 private:
