@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # fast_shape.sh DATA [ACDF]: prints the table of docs/appendix/local-shapes.md, the mean relative variance of local files
-# of both shapes.
+# of each shape.
 set -euo pipefail
 data=$1
 acdf=${2:-build/release/tools/acdf}
@@ -9,18 +9,20 @@ trap 'rm -rf "$work"' EXIT
 
 # variance PROBE SIZE SHAPE
 variance() {
-    "$acdf" local "$1" -o "$work/out.acdf" --budget "$2" --shape "$3" --force --quiet --json 2>/dev/null |
+    "$acdf" local "$1" -o "$work/out.acdf" --budget "$2" --shape "$3" --filter nearest --force --quiet --json 2>/dev/null |
         jq .relative_variance
 }
 
-echo "| mean relative variance | 1 MiB, small | fast | ratio | 128 KiB, small | fast | ratio |"
+echo "| mean relative variance | 1 MiB, halvings | small, ratio | fast, ratio | 128 KiB, halvings | small, ratio | fast, ratio |"
 echo "|---|---|---|---|---|---|---|"
 for name in noon_grass_1k.hdr studio_small_05_1k.hdr venice_sunset_1k.hdr courtyard.exr sunset.exr city.exr; do
     line="| ${name%.*} |"
     for size in 1MiB 128KiB; do
-        small=$(variance "$data/probes/$name" $size small)
-        fast=$(variance "$data/probes/$name" $size fast)
-        line+=$(awk -v s="$small" -v f="$fast" 'BEGIN { printf " %.4f | %.4f | %.2f |", s, f, f / s }')
+        least=$(variance "$data/probes/$name" $size halvings)
+        line+=$(awk -v v="$least" 'BEGIN { printf " %.4f |", v }')
+        for shape in small fast; do
+            line+=$(awk -v v="$(variance "$data/probes/$name" $size $shape)" -v of="$least" 'BEGIN { printf " %.4f, %.2f |", v, v / of }')
+        done
     done
     echo "$line"
 done
