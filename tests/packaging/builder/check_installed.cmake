@@ -30,7 +30,7 @@ endforeach()
 # Three headers, each alone; nothing of the library's own is installed with them.
 run(ignored ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/own --component builder)
 file(GLOB_RECURSE headers RELATIVE ${WORK}/own/include ${WORK}/own/include/*)
-if(NOT headers STREQUAL "acdf/accuracy.h;acdf/builder.h;acdf/outcome.h;acdf/pixels.h;acdf/rebuild.h;acdf/rebuild_c.h;acdf/renderers.h")
+if(NOT headers STREQUAL "acdf/accuracy.h;acdf/builder.h;acdf/learn.h;acdf/outcome.h;acdf/pixels.h;acdf/rebuild.h;acdf/rebuild_c.h;acdf/renderers.h")
     message(FATAL_ERROR "installed headers: ${headers}")
 endif()
 foreach(header accuracy builder renderers)
