@@ -33,6 +33,7 @@ if(TARGET acdf_builder)
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/maps.h
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/outcome.h
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/pixels.h
+        ${PROJECT_SOURCE_DIR}/lib/build/acdf/learn.h
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/rebuild.h
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/rebuild_c.h
         ${PROJECT_SOURCE_DIR}/lib/build/acdf/renderers.h

@@ -113,10 +113,33 @@ def trees():
     return mesh, {"from": [0.3, -5.6, 1.5], "to": [0, 1, 1.0], "fov": 60}, "probes/noon_grass_1k.hdr"
 
 
+def roof():
+    """A terrace under a roof on four posts, with a table and a ball: the sky is seen at the sides."""
+    mesh = Mesh()
+    mesh.grid((-12, -12, 0), (24, 0, 0), (0, 24, 0), 40, 40)
+    mesh.box((-4, -3, 2.6), (4, 3, 2.8), 12)
+    for x in (-3.8, 3.6):
+        for y in (-2.8, 2.6):
+            mesh.box((x, y, 0), (x + 0.2, y + 0.2, 2.6), 3)
+    mesh.box((-1, -0.6, 0.7), (1, 0.6, 0.8), 4)
+    mesh.ellipsoid((2, 0.8, 0.5), (0.5, 0.5, 0.5), 16)
+    return mesh, {"from": [-5.5, -6.5, 2.2], "to": [0.5, 0, 0.8], "fov": 50}, "probes/venice_sunset_1k.hdr"
+
+
+def open_ground():
+    """Objects on open ground: contact shadows alone."""
+    mesh = Mesh()
+    mesh.grid((-8, -8, 0), (16, 0, 0), (0, 16, 0), 40, 40)
+    mesh.ellipsoid((0, 0, 0.8), (0.8, 0.8, 0.8), 40)
+    mesh.box((-2.4, 0.4, 0), (-1.2, 1.6, 1.2), 6)
+    mesh.ellipsoid((1.6, -1.0, 0.4), (0.4, 0.4, 0.4), 24)
+    return mesh, {"from": [4, -5, 2.4], "to": [0, 0, 0.5], "fov": 40}, "probes/venice_sunset_1k.hdr"
+
+
 def main():
     folder = pathlib.Path(sys.argv[1]).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    for make in (room, courtyard, car, trees):
+    for make in (room, courtyard, car, trees, roof, open_ground):
         name = make.__name__
         mesh, camera, probe = make()
         mesh.write(folder / f"{name}.obj")

@@ -5,6 +5,8 @@
 //   compared
 //                                                          with; samplers as of acdf render: file:/A/FILE, portals,
 //                                                          mis(A,B)
+//   bench_visibility trimmed SCENE DATA POINTS SAMPLER...      the same but for the noisiest 1 % of points, of a
+//                                                          picture of 640 x 480: what is learned, is learned there
 //   bench_visibility cost SCENE DATA POINTS FILE...            nanoseconds of a sample
 //
 // Variances are summed over all texels, with a shadow ray to the middle of each. The same sums are what samples are
@@ -47,10 +49,11 @@ std::string contents(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-std::unique_ptr<tools::LoadedScene> scene_of(const std::string& path, const std::string& data) {
+std::unique_ptr<tools::LoadedScene> scene_of(const std::string& path, const std::string& data,
+                                             std::uint32_t width = 96) {
     tools::SceneFile file = tools::parse_scene(contents(path));
-    file.width = 96;
-    file.height = 72;
+    file.width = width;
+    file.height = width / 4 * 3;
     return tools::load_scene(file, data);
 }
 
@@ -268,7 +271,33 @@ void print_row(const tools::LoadedScene& scene, const std::vector<Sums>& sums, c
     else std::printf(" %.2f | %.2f | %d | %d |\n", error / std::sqrt(variance), std::sqrt(z_square), far, lost);
 }
 
-int measure_samplers(const tools::LoadedScene& scene, std::size_t count, const std::vector<std::string>& texts) {
+/// The mean relative variance of points but for the noisiest hundredth, and that of the first sampler over it.
+void print_trimmed(const std::vector<Sums>& sums, const Measured& one, std::size_t k, double& baseline) {
+    const double count = double(sums.size());
+    double mean = 0.0, error = 0.0, variance = 0.0;
+    for (const Sums& point : sums) {
+        mean += point.exact.mean / count;
+        error += point.deviation[k];
+        variance += point.exact.variance[k] / kSamples;
+    }
+    std::vector<double> noises;
+    for (const Sums& point : sums)
+        noises.push_back(point.exact.variance[k] / (point.exact.mean * point.exact.mean + 0.01 * mean * mean));
+    std::sort(noises.begin(), noises.end());
+    noises.resize(noises.size() - noises.size() / 100);
+    const double noise = std::accumulate(noises.begin(), noises.end(), 0.0) / double(noises.size());
+    if (k == 0) baseline = noise;
+    const double made = one.built.making.seconds;
+    std::printf("| `%s` | %.3g | %.3g | %s | %.2f |\n", one.spec.text.c_str(), noise, baseline / noise,
+                made > 0.0 ? (std::to_string(std::lround(10.0 * made) / 10) + "." +
+                              std::to_string(std::lround(10.0 * made) % 10) + " s")
+                                 .c_str()
+                           : "",
+                error / std::sqrt(variance));
+}
+
+int measure_samplers(const tools::LoadedScene& scene, std::size_t count, const std::vector<std::string>& texts,
+                     bool trimmed) {
     const std::vector<ScenePoint>& seen = scene.points.points;
     count = std::min(count, seen.size());
     builder::TargetRows rows(builder::TargetOptions{});
@@ -285,7 +314,9 @@ int measure_samplers(const tools::LoadedScene& scene, std::size_t count, const s
         sums[i] = sums_of(seen[i * seen.size() / count], scene.scene.light, samplers, i);
     });
     double baseline = 0.0;
-    for (std::size_t k = 0; k < samplers.size(); ++k) print_row(scene, sums, samplers[k], k, baseline);
+    for (std::size_t k = 0; k < samplers.size(); ++k)
+        if (trimmed) print_trimmed(sums, samplers[k], k, baseline);
+        else print_row(scene, sums, samplers[k], k, baseline);
     return 0;
 }
 
@@ -296,8 +327,10 @@ int main(int argc, char** argv) {
         const std::string what = argc > 1 ? argv[1] : "";
         if (what == "make" && argc == 7) return make(*scene_of(argv[2], argv[3]), argv[4], argv[5], argv[6]);
         const std::size_t points = argc > 5 ? std::strtoull(argv[4], nullptr, 10) : 0;
-        if (what == "measure" && argc > 5)
-            return measure_samplers(*scene_of(argv[2], argv[3]), points, {argv + 5, argv + argc});
+        const bool trimmed = what == "trimmed";
+        if ((what == "measure" || trimmed) && argc > 5)
+            return measure_samplers(*scene_of(argv[2], argv[3], trimmed ? 640 : 96), points,
+                                    {argv + 5, argv + argc}, trimmed);
         if (what == "cost" && argc > 5)
             return time_files(*scene_of(argv[2], argv[3]), points, Files(argc - 5, argv + 5));
     } catch (const std::exception& error) {
@@ -306,6 +339,7 @@ int main(int argc, char** argv) {
     }
     std::fprintf(stderr, "usage: bench_visibility make SCENE DATA local|visibility|portals BYTES OUT\n"
                          "       bench_visibility measure SCENE DATA POINTS SAMPLER...\n"
+                         "       bench_visibility trimmed SCENE DATA POINTS SAMPLER...\n"
                          "       bench_visibility cost SCENE DATA POINTS FILE...\n");
     return 2;
 }

@@ -49,7 +49,10 @@ ordered_json sampler_json(const Compared& one, std::uint32_t samples, bool timed
         out.erase("build_seconds");
         return out;
     }
-    if (one.making.seconds > 0.0) out["making_seconds"] = one.making.seconds; // a picture
+    if (one.making.seconds > 0.0) { // of a picture
+        out["making_seconds"] = one.making.seconds;
+        out["making_shadow_rays"] = one.making.shadow_rays;
+    }
     out["nanoseconds"] = interval_json(measure::mean_interval(one.nanoseconds));
     out["equal_time_gain"] = interval_json(one.equal_time);
     return out;
@@ -104,6 +107,12 @@ std::string table(const RenderPass& pass, const Comparison& comparison, const Co
                           gain(one.equal_time).c_str());
         out += format(" %+8.1f\n", one.bias_standard_errors);
     }
+    for (const Compared& one : comparison.samplers)
+        if (timed && one.making.seconds > 0.0)
+            out += format(
+                "'%s' was made for the picture in %.3g s of processor time, with %.3g shadow rays; us and gain "
+                "include it.\n",
+                one.spec.text.c_str(), one.making.seconds, double(one.making.shadow_rays));
     for (const std::string& sentence : verdict(comparison, timed)) out += sentence + "\n";
     return out;
 }

@@ -14,6 +14,7 @@
 #include "tools/cli/file_input.h"
 #include "tools/cli/mesh_visibility.h"
 #include "tools/commands.h"
+#include "tools/render/learned.h"
 #include "tools/render/portals.h"
 
 #include <algorithm>
@@ -147,7 +148,7 @@ bool is_ours(const SamplerSpec& spec) {
     if (!spec.parts.empty()) return std::any_of(spec.parts.begin(), spec.parts.end(), is_ours);
     return spec.kind == SamplerKind::env || spec.kind == SamplerKind::local || spec.kind == SamplerKind::brdf ||
            spec.kind == SamplerKind::visibility || spec.kind == SamplerKind::visibility_portals ||
-           spec.kind == SamplerKind::file || spec.kind == SamplerKind::product;
+           spec.kind == SamplerKind::learned || spec.kind == SamplerKind::file || spec.kind == SamplerKind::product;
 }
 
 } // namespace
@@ -195,6 +196,12 @@ struct SamplerBuilder::Store {
             if (!geometry) fail_without_scene(spec);
             if (geometry->portals.empty()) throw SpecError("sampler '" + spec.text + "': the scene has no portals");
             return visibility_table(fitted, *geometry, spec.bytes, true);
+        case SamplerKind::learned: {
+            if (!points) fail_without_scene(spec);
+            LearnedSampler made =
+                learned_sampler(fitted, *points, spec.bytes, spec.mis.kind == ACDF_PARTNER_COSINE);
+            return {made.file, std::move(made.sampler), made.file.get()};
+        }
         case SamplerKind::brdf:
             return brdf_table(*brdfs[material], spec.bytes);
         case SamplerKind::brdf_table:

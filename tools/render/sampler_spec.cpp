@@ -38,6 +38,7 @@ constexpr Name names[] = {
     {"local", SamplerKind::local, "1MiB"},
     {"visibility", SamplerKind::visibility, "4MiB"},
     {"visibility-portals", SamplerKind::visibility_portals, "4MiB"},
+    {"learned", SamplerKind::learned, "4MiB"},
     {"brdf", SamplerKind::brdf, "128KiB"},
     {"brdf-table", SamplerKind::brdf_table, "mean"},
     {"ggx", SamplerKind::ggx, "0.1"},
@@ -79,6 +80,7 @@ void read_argument(const std::string& argument, SamplerSpec& spec) {
     case SamplerKind::local:
     case SamplerKind::visibility:
     case SamplerKind::visibility_portals:
+    case SamplerKind::learned:
     case SamplerKind::brdf:
         return read_size(argument, spec);
     case SamplerKind::tiles:
@@ -130,8 +132,9 @@ std::string trimmed(const std::string& text) {
 
 /// " --mis cosine --shares 2:1 --heuristic power --scene --shape fast".
 void read_partner(const std::string& options, SamplerSpec& spec) {
-    if (spec.kind != SamplerKind::env && spec.kind != SamplerKind::local && spec.kind != SamplerKind::ideal)
-        fail(spec.text, "takes no options: env, local and ideal do");
+    if (spec.kind != SamplerKind::env && spec.kind != SamplerKind::local && spec.kind != SamplerKind::learned &&
+        spec.kind != SamplerKind::ideal)
+        fail(spec.text, "takes no options: env, local, learned and ideal do");
     std::vector<std::string> words;
     std::istringstream stream(options);
     for (std::string word; stream >> word;) words.push_back(word);
@@ -155,6 +158,11 @@ void read_partner(const std::string& options, SamplerSpec& spec) {
                                 "--heuristic power, --scene, or of local --shape fast");
         ++i;
     }
+    const builder::Partner& mis = spec.mis;
+    if (spec.kind == SamplerKind::learned &&
+        (mis.kind > ACDF_PARTNER_COSINE || mis.heuristic != ACDF_HEURISTIC_BALANCE || mis.light != mis.other ||
+         spec.of_scene))
+        fail(spec.text, "takes --mis cosine alone");
     if (spec.kind == SamplerKind::ideal && spec.mis.kind > ACDF_PARTNER_COSINE)
         fail(spec.text, "takes --mis cosine alone");
     if (spec.kind == SamplerKind::local && spec.mis.kind == ACDF_PARTNER_MEAN)
@@ -301,7 +309,7 @@ SamplerSpec parse_sampler(const std::string& text) {
     if (spec.kind == SamplerKind::compensated)
         fail(text,
              "its pdf is 0 where there is little light; use mis-compensated, which is mis(compensated,cosine)");
-    if (spec.mis.kind != ACDF_PARTNER_NONE)
+    if (spec.mis.kind != ACDF_PARTNER_NONE && spec.kind != SamplerKind::learned)
         fail(text, "its pdf is 0 where the MIS partner suffices; use mis(" + text + ", cosine)");
     return spec;
 }

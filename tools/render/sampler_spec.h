@@ -23,6 +23,8 @@ enum class SamplerKind {
     local,            ///< local:1MB: what `acdf local` makes
     visibility,       ///< visibility:4MB: what `acdf local --visibility` makes for the scene
     visibility_portals, ///< visibility-portals:4MB: the same with the scene's portals
+    learned,            ///< learned:4MB: the same from shadow rays of the picture, four a point; --mis cosine:
+                        ///< for what samples of the cosine leave over
     brdf,               ///< brdf:64KiB: what `acdf brdf` makes, one for each BRDF of the scene
     brdf_table,         ///< brdf-table[:centre]: the full table of the paper, repaired or as described
     ggx,                ///< ggx:0.1: normals of a lobe visible to the viewer
@@ -43,7 +45,7 @@ enum class SamplerKind {
 struct SamplerSpec {
     SamplerKind kind = SamplerKind::full_cdf;
     std::string text;                    ///< as given: its name in tables
-    std::uint64_t bytes = 0;             ///< env, local, visibility, brdf: the budget
+    std::uint64_t bytes = 0;             ///< env, local, visibility, learned, brdf: the budget
     std::uint32_t columns = 0, rows = 0; ///< tiles, visibility_cache, downsampled
     std::uint32_t candidates = 0;        ///< ris
     double alpha = 0.0;                  ///< ggx
@@ -51,7 +53,7 @@ struct SamplerSpec {
     bool uniform = false;                ///< portals: no light
     bool centre = false;                 ///< brdf-table as described
     bool power = false;                  ///< mis: power heuristic
-    builder::Partner mis;                ///< env, local, ideal: that it is made for
+    builder::Partner mis;                ///< env, local, learned, ideal: that it is made for
     bool of_scene = false;               ///< env, local: made for the normals that the camera sees
     bool fast = false;                   ///< local: of the fast shape
     bool automatic = false;              ///< a part of mis: gives as many samples as it recommends itself

@@ -1,7 +1,7 @@
 #include "compress/visibility/fit.h"
 
-#include "compress/fit/shared.h"
 #include "compress/parallel.h"
+#include "compress/visibility/chunk.h"
 #include "compress/visibility/portal_rows.h"
 #include "compress/visibility/rows.h"
 
@@ -63,32 +63,6 @@ AcdfVisibility header_of(const PointSource& source, const VisibilityFrame& frame
         out.high[k] = std::max(out.high[k] + kMargin * size, std::nextafter(out.high[k], kInfinity));
     }
     return out;
-}
-
-/// The bytes of a cell.
-void encode(const VisibilityParts& parts, const float* given, const float* factors, std::uint8_t* out) {
-    constexpr double kUnseen = 1e-6; // of what no point of the cell sees: it has the factor of the cell around it
-    std::vector<double> all(parts.boxes()), seen(parts.boxes());
-    double whole = 0.0, visible = 0.0;
-    for (std::size_t p = 0; p < parts.boxes(); ++p) {
-        all[p] = double{given[p]} + kUnseen;
-        seen[p] = all[p] * double{factors[p]};
-        whole += all[p];
-        visible += seen[p];
-    }
-    *out++ = visibility_code(whole > 0.0 ? visible / whole : 1.0);
-    for (std::size_t p = parts.boxes(); p < parts.count(); ++p) *out++ = visibility_code(double{factors[p]});
-    const std::vector<std::array<double, 2>> without = parts.sides(all.data()), with = parts.sides(seen.data());
-    for (std::size_t c = 0; c < with.size(); ++c) {
-        const double lower = with[c][0] / without[c][0], upper = with[c][1] / without[c][1];
-        *out++ = row_code(lower, upper);
-    }
-}
-
-template <class Record>
-void append(std::vector<std::uint8_t>& bytes, const Record* records, std::size_t count) {
-    const auto* first = reinterpret_cast<const std::uint8_t*>(records);
-    bytes.insert(bytes.end(), first, first + count * sizeof(Record));
 }
 
 /// Points of a scene, more of them where cells are small: so many that each cell has about as many.
@@ -215,25 +189,20 @@ std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, co
                   columns.begin() + std::ptrdiff_t(r * splits_of_tiles));
         for (std::uint32_t cell = regions[r].begin; cell < regions[r].end; ++cell) {
             const std::size_t first = (cell - regions[r].begin) * parts.count();
-            encode(parts, &told.all[first], &told.factors[first], &rows[cell * width]);
+            encode_visibility(parts, &told.all[first], &told.factors[first], &rows[cell * width]);
             set_of_row[cell] = static_cast<std::uint16_t>(r);
         }
         report(kDivisionShare + (1.0 - kDivisionShare) * double(++done) / double(regions.size()));
     });
 
-    AcdfVisibility& header = division.header;
-    header.split_count = static_cast<std::uint32_t>(division.splits.size());
-    header.row_count = tree.cell_count();
-    header.column_count = coarse.column_count();
-    header.further_sets = static_cast<std::uint32_t>(regions.size() - 1);
-    if (header.further_sets == 0) set_of_row.clear();
-    Chunk chunk{ACDF_CHUNK_VISIBILITY, {}};
-    append(chunk.bytes, &header, 1);
-    append(chunk.bytes, division.splits.data(), division.splits.size());
-    append(chunk.bytes, columns.data(), columns.size());
-    append(chunk.bytes, set_of_row.data(), set_of_row.size());
-    append(chunk.bytes, rows.data(), rows.size());
-    std::vector<Chunk> chunks{std::move(chunk)};
+    VisibilityChunk chunk{division.header, division.splits, std::move(columns), std::move(set_of_row),
+                          std::move(rows)};
+    chunk.header.split_count = static_cast<std::uint32_t>(division.splits.size());
+    chunk.header.row_count = tree.cell_count();
+    chunk.header.column_count = coarse.column_count();
+    chunk.header.further_sets = static_cast<std::uint32_t>(regions.size() - 1);
+    if (chunk.header.further_sets == 0) chunk.set_of_row.clear();
+    std::vector<Chunk> chunks{chunk.stored()};
     if (portals)
         chunks.push_back(portal_chunk(local, *portals, shares, division.points, tree.cell_count(), scene.occluded));
     report(1.0);

@@ -65,6 +65,11 @@ void VisibilityParts::cut(const std::vector<double>& worth, std::uint32_t column
     choose(worth, columns);
     number(split_count(local_) > 0 ? 0 : ACDF_TILE_FLAG);
     box_count_ = tiles_of_part_.size();
+    part_of_tile_.resize(light_.size());
+    for (std::uint32_t p = 0; p < box_count_; ++p)
+        for (const std::uint32_t tile : tiles_of_part_[p]) part_of_tile_[tile] = p;
+    for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
+        part_of_tile_[local_.bright_tiles[k].tile] = static_cast<std::uint32_t>(box_count_) + k;
     aim();
 }
 
@@ -177,6 +182,35 @@ void VisibilityParts::aim() {
         for (std::uint32_t i = 0; i < directions; ++i)
             directions_.push_back(
                 place(local_.bright_tiles[k].tile, (i + 0.5) / directions, reversed(i) + 0.5 / directions));
+}
+
+std::vector<VisibilityParts::Tile> VisibilityParts::tiles(std::size_t part) const {
+    const AcdfGrid grid = acdf_environment_grid(&local_.environment);
+    std::vector<Tile> out;
+    const auto add = [&](std::uint32_t number) {
+        const AcdfRange* box = &boxes_[2 * std::size_t{number}];
+        double middle[2] = {0.5, 0.5};
+        const AcdfRange range[2] = {box[0], box[1]};
+        const AcdfDirectionSample s = acdf_grid_position(&grid, range, middle, 1.0);
+        out.push_back(
+            {{s.direction[0], s.direction[1], s.direction[2]}, acdf_grid_solid_angle(&grid, box), light_[number]});
+    };
+    if (part >= box_count_) add(local_.bright_tiles[part - box_count_].tile);
+    else
+        for (const std::uint32_t number : tiles_of_part_[part]) add(number);
+    return out;
+}
+
+bool VisibilityParts::find(const float direction[3], std::uint32_t& part) const {
+    const AcdfGrid grid = acdf_environment_grid(&local_.environment);
+    std::uint32_t square[2], node = acdf_blend_root(&local_.blend);
+    if (!acdf_local_square(&grid, direction, square)) return false;
+    while (!(node & ACDF_TILE_FLAG)) {
+        const AcdfSplit& split = local_.blend.splits[node];
+        node = split.child[square[split.place & 7u] >= split.place >> 3];
+    }
+    part = part_of_tile_[node & ~ACDF_TILE_FLAG];
+    return true;
 }
 
 void VisibilityParts::weigh(const AcdfLocalPoint& point, float* out) const {

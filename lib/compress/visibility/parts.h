@@ -30,6 +30,14 @@ public:
 
     /// What of its light a normal gives to each part, by the stored rows; the sum is its irradiance over `total`.
     void weigh(const AcdfLocalPoint& point, float* out) const;
+    /// A tile of a part: its middle, and what of the light it gives in the mean of all normals.
+    struct Tile {
+        std::array<float, 3> direction{};
+        double solid_angle = 0.0, light = 0.0;
+    };
+    std::vector<Tile> tiles(std::size_t part) const;
+    /// The part that a direction lies in; false where it is none.
+    bool find(const float direction[3], std::uint32_t& part) const;
     const std::array<float, 3>& direction(std::size_t part, std::uint32_t index) const {
         return directions_[part * directions + index % directions];
     }
@@ -55,6 +63,7 @@ private:
     std::vector<double> light_;    ///< of the tiles
     std::vector<AcdfRange> boxes_; ///< two a tile
     std::vector<std::vector<std::uint32_t>> tiles_of_part_;
+    std::vector<std::uint32_t> part_of_tile_;
     std::size_t box_count_ = 0;
     std::vector<std::uint16_t> columns_;
     std::vector<Cut> cuts_; ///< in preorder

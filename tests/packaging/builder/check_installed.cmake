@@ -30,10 +30,10 @@ endforeach()
 # Three headers, each alone; nothing of the library's own is installed with them.
 run(ignored ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/own --component builder)
 file(GLOB_RECURSE headers RELATIVE ${WORK}/own/include ${WORK}/own/include/*)
-if(NOT headers STREQUAL "acdf/accuracy.h;acdf/builder.h;acdf/maps.h;acdf/outcome.h;acdf/pixels.h;acdf/rebuild.h;acdf/rebuild_c.h;acdf/renderers.h")
+if(NOT headers STREQUAL "acdf/accuracy.h;acdf/builder.h;acdf/learn.h;acdf/maps.h;acdf/outcome.h;acdf/pixels.h;acdf/rebuild.h;acdf/rebuild_c.h;acdf/renderers.h")
     message(FATAL_ERROR "installed headers: ${headers}")
 endif()
-foreach(header accuracy builder maps renderers)
+foreach(header accuracy builder learn maps renderers)
     file(WRITE ${WORK}/alone.cpp "#include <acdf/${header}.h>\n")
     run(ignored ${CXX} -std=c++17 -Wall -Wextra -Wconversion -Werror -I${WORK}/prefix/include
         -fsyntax-only ${WORK}/alone.cpp)

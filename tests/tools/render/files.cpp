@@ -180,6 +180,7 @@ TEST(RenderSampler, TextsAreUnderstood) {
     EXPECT_EQ(parse_sampler("tiles:64x32").columns, 64u);
     EXPECT_EQ(parse_sampler("tiles").rows, 16u);
     EXPECT_EQ(parse_sampler("visibility-cache:8x4").columns, 8u);
+    EXPECT_EQ(parse_sampler("learned:2MB --mis cosine").mis.kind, ACDF_PARTNER_COSINE); // valid alone, too
     EXPECT_FALSE(parse_sampler("portals").uniform);
     EXPECT_TRUE(parse_sampler("portals:uniform").uniform);
     EXPECT_EQ(parse_sampler("ris:8").candidates, 8u);
@@ -226,7 +227,8 @@ TEST(RenderSampler, TextsAreUnderstood) {
     for (const char* text :
          {"local:1MB --mis cosine", "mis(local --mis mean,cosine)", "mis(full-cdf --scene,cosine)",
           "mis(env --mis,cosine)", "mis(env --mis sun,cosine)", "mis(env --shares 2,cosine)",
-          "mis(auto:env --mis cosine,auto:cosine)", "mis(ideal --mis brdf,cosine)"})
+          "mis(auto:env --mis cosine,auto:cosine)", "mis(ideal --mis brdf,cosine)",
+          "mis(learned --mis brdf,cosine)", "mis(learned --mis cosine --shares 2:1,cosine)"})
         EXPECT_THROW(parse_sampler(text), SpecError) << text;
     const SamplerSpec compensated = parse_sampler("mis-compensated");
     EXPECT_EQ(compensated.text, "mis-compensated");

@@ -93,8 +93,12 @@ void expect_as_summed(Viewed& scene, const std::vector<std::vector<std::string>>
 TEST(RenderVisibility, AreAsSummedBehindAWall) {
     ACDF_NOT_SANITIZED();
     Viewed scene(test::small_scene("\"full-cdf\""));
-    expect_as_summed(
-        scene, {{"local:24KiB"}, {"visibility:24KiB"}, {"visibility-cache:8x4"}, {"visibility:24KiB", "cosine"}});
+    expect_as_summed(scene, {{"local:24KiB"},
+                             {"visibility:24KiB"},
+                             {"visibility-cache:8x4"},
+                             {"visibility:24KiB", "cosine"},
+                             {"learned:64KiB"},
+                             {"learned:64KiB --mis cosine", "cosine"}});
 }
 
 TEST(RenderVisibility, AreAsSummedInARoom) {
