@@ -16,9 +16,9 @@ using namespace acdf_test;
 
 namespace {
 
-class Opened {
+class OpenedMaps {
 public:
-    explicit Opened(const IndexedSpec& spec, bool tables = true) : bytes_(spec.encode()) {
+    explicit OpenedMaps(const IndexedSpec& spec, bool tables = true) : bytes_(spec.encode()) {
         acdf::LoadOptions options;
         options.tables = tables;
         const acdf::Status status = acdf::File::from_memory(bytes_.data(), bytes_.size(), file_, options);
@@ -61,7 +61,7 @@ TEST(Indexed, whereOneSunIsNotKnownTheOtherStands) {
         IndexedSpec spec;
         const MapSpec known = spec.maps[1 - unknown];
         spec.maps[unknown] = {spec.maps[unknown].share, 0.0f, 0.0f, {0.0f, 0.0f, 0.0f}, spec.maps[unknown].codes};
-        const Opened file(spec);
+        const OpenedMaps file(spec);
         for (const double time : {7.0, 12.0, 17.0}) {
             const acdf::MixedEnvironment sky = file.view().at(time);
             for (int i = 0; i < 3; ++i) EXPECT_EQ(sky.data().cone.axis[i], double{known.sun[i]}) << time;
@@ -72,7 +72,7 @@ TEST(Indexed, whereOneSunIsNotKnownTheOtherStands) {
 
 TEST(Indexed, mixesMapsByTheirLight) {
     const IndexedSpec spec = dull();
-    const Opened opened(spec);
+    const OpenedMaps opened(spec);
     for (const double time : {6.0, 7.0, 9.5, 12.0, 17.75, 18.0}) {
         const acdf::MixedEnvironment sky = opened.view().at(time);
         for (const bool right : {false, true})
@@ -87,7 +87,7 @@ TEST(Indexed, mixesMapsByTheirLight) {
 }
 
 TEST(Indexed, endsStandForAllBeyond) {
-    const Opened opened{IndexedSpec()};
+    const OpenedMaps opened{IndexedSpec()};
     const float up[3] = {0.0f, 0.6f, 0.8f};
     EXPECT_EQ(opened.view().at(-1e300).pdf(up), opened.view().at(6.0).pdf(up));
     EXPECT_EQ(opened.view().at(std::nan("")).pdf(up), opened.view().at(6.0).pdf(up));
@@ -97,7 +97,7 @@ TEST(Indexed, endsStandForAllBeyond) {
 }
 
 TEST(Indexed, sunMovesAlongTheGreatCircle) {
-    const Opened opened{IndexedSpec()};
+    const OpenedMaps opened{IndexedSpec()};
     const acdf::MixedEnvironment sky = opened.view().at(10.0); // a third
     const double thirty = acdf_test::pi / 6.0;
     EXPECT_NEAR(sky.data().cone.axis[0], std::cos(thirty), 1e-9);
@@ -128,7 +128,7 @@ TEST(Indexed, pdfIsThatOfTheSample) {
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     for (const IndexedSpec& spec : forms())
         for (const bool tables : {true, false}) {
-            const Opened opened(spec, tables);
+            const OpenedMaps opened(spec, tables);
             for (const double time : {6.0, 9.5, 18.0}) {
                 const acdf::MixedEnvironment sky = opened.view().at(time);
                 for (int n = 0; n < 2000; ++n) {
@@ -151,7 +151,7 @@ TEST(Indexed, samplesFollowThePdf) {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     for (const IndexedSpec& spec : forms()) {
-        const Opened opened(spec);
+        const OpenedMaps opened(spec);
         const acdf::MixedEnvironment sky = opened.view().at(9.5);
         std::vector<double> probability(kColumns * kRows, 0.0);
         double integral = 0.0;
@@ -182,7 +182,7 @@ TEST(Indexed, samplesFollowThePdf) {
 }
 
 TEST(Indexed, callsOfCAreTheSameAndMove) {
-    const Opened opened{IndexedSpec()};
+    const OpenedMaps opened{IndexedSpec()};
     AcdfFile* file = acdf_from_memory(opened.bytes().data(), opened.bytes().size(), nullptr);
     ASSERT_NE(file, nullptr);
     AcdfIndexed indexed;
@@ -218,7 +218,7 @@ TEST(Indexed, axesAreMixedOneByOne) {
     spec.maps.clear();
     for (std::uint32_t i = 0; i < 6; ++i)
         spec.maps.push_back({i < 4 ? 0.125f : 0.25f, 0.0f, 0.0f, {0.0f, 0.0f, 0.0f}, {40 * i + 10, 250 - 40 * i}});
-    const Opened opened(spec);
+    const OpenedMaps opened(spec);
     // Between the second and the third haze of the later time: maps 4 and 5, a quarter of the way.
     const acdf::MixedEnvironment sky = opened.view().at(18.0, 4.0);
     ASSERT_EQ(sky.data().count, 2u);
