@@ -1,6 +1,6 @@
 /* The exported C as OpenCL: answers to words.bin, directions.bin and normals.bin in FOLDER by the first device
- * there is. A second argument "BRDF": those of a BRDF, whose normals are views; "MAPS": those of several maps, whose
- * normals are coordinates. */
+ * there is. A second argument "BRDF": those of a BRDF, whose normals are views; "MAPS": those of several maps,
+ * whose normals are coordinates. */
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
