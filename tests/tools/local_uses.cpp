@@ -74,13 +74,14 @@ TEST_F(LocalCommands, InfoReportsWhatBinsShare) {
                                      {"tiles", 3},
                                      {"rows", 5},
                                      {"bright_tiles", 1},
+                                     {"shape", "small"},
                                      {"cosine_share", 0.25}}));
     ASSERT_EQ(report["axes"].size(), 3u);
     EXPECT_EQ(report["axes"][2]["name"], "normal");
     EXPECT_EQ(report["axes"][2]["role"], "indexed");
     const std::string text = run_acdf({"info", shared}).out;
     for (const char* part :
-         {"local, format", "17 stored; 3 tiles shared by 5 rows, 1 bright tiles; cosine share 0.25"})
+         {"local, format", "17 stored; 3 tiles shared by 5 rows, 1 bright tiles; shape small; cosine share 0.25"})
         EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 

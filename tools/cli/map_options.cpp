@@ -1,9 +1,7 @@
 #include "tools/cli/map_options.h"
 
-#include "build/builder/sources.h"
 #include "tools/cli/built.h"
 #include "tools/cli/json.h"
-#include "tools/cli/probe_source.h"
 #include "tools/cli/sequence.h"
 #include "tools/commands.h"
 
@@ -114,30 +112,41 @@ builder::IndexedOptions MapOptions::options(const input::ProbeOptions& reading,
     return out;
 }
 
+LoadedMaps MapOptions::load(const input::ProbeOptions& reading, const builder::TargetOptions& target,
+                            const Note& note, const build::Progress& progress) const {
+    LoadedMaps out;
+    out.maps.resize(files_.size());
+    out.source.reading = reading_text(reading);
+    std::vector<std::string> digests;
+    std::set<std::string> notes; // most hold for all maps
+    const Note once = [&](const std::string& text) {
+        if (notes.insert(text).second) note(text);
+    };
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+        const ProbeTarget loaded = load_map(files_[i], reading, target, once, out.maps[i].texels);
+        out.maps[i].fitted = loaded.target;
+        out.source.projection = input::to_string(loaded.probe.projection);
+        digests.push_back(loaded.probe.source_sha256);
+        if (i == 0) out.source.name = loaded.probe.source_name;
+        if (progress) progress(double(i + 1) / double(files_.size()), "reading");
+    }
+    out.source.sha256 = sha256_of_maps(digests, files_[0]);
+    return out;
+}
+
 Converted MapOptions::convert(const input::ProbeOptions& reading, const builder::EnvironmentOptions& environment,
                               const Listener& listener) const {
     constexpr double kReading = 0.2; // of the time, about
+    const LoadedMaps loaded = load(reading, environment.target, listener.note, [&](double share, const char* what) {
+        if (listener.progress) listener.progress(kReading * share, what);
+    });
     builder::IndexedOptions all = options(reading, environment);
-    std::vector<builder::IndexedMap> maps(files_.size());
-    std::vector<std::string> digests;
-    std::set<std::string> notes; // most hold for all maps
-    const Note note = [&](const std::string& text) {
-        if (notes.insert(text).second) listener.note(text);
-    };
-    for (std::size_t i = 0; i < files_.size(); ++i) {
-        const ProbeTarget loaded = load_map(files_[i], reading, all.target, note, maps[i].texels);
-        maps[i].fitted = loaded.target;
-        all.source.projection = input::to_string(loaded.probe.projection);
-        digests.push_back(loaded.probe.source_sha256);
-        if (i == 0) all.source.name = loaded.probe.source_name;
-        if (listener.progress) listener.progress(kReading * double(i + 1) / double(files_.size()), "reading");
-    }
-    all.source.sha256 = sha256_of_maps(digests, files_[0]);
+    all.source = loaded.source;
     const build::Progress building = [&](double share, const char* what) {
         if (listener.progress) listener.progress(kReading + (1.0 - kReading) * share, what);
     };
     builder::IndexedFile made;
-    require_built(files_[0], builder::indexed(maps, all, made, told(building)));
+    require_built(files_[0], builder::indexed(loaded.maps, all, made, told(building)));
     double worst = 0.0;
     nlohmann::ordered_json each = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < made.accuracy.size(); ++i) {

@@ -1,9 +1,12 @@
 // Several maps in one file: what `acdf env --axis` does.
 #pragma once
 
+#include "build/builder/sources.h"
 #include "tools/cli/conversion.h"
+#include "tools/cli/probe_source.h"
 
 #include <acdf/builder.h>
+#include <acdf/maps.h>
 
 #include <CLI/CLI.hpp>
 
@@ -12,6 +15,12 @@
 #include <vector>
 
 namespace acdf::tools {
+
+/// Maps for one file, and what they are together.
+struct LoadedMaps {
+    std::vector<builder::IndexedMap> maps;
+    builder::Source source;
+};
 
 /// The options of several maps.
 class MapOptions {
@@ -29,6 +38,9 @@ public:
     /// Of those of an environment only target, budget and codec count.
     builder::IndexedOptions options(const input::ProbeOptions& reading,
                                     const builder::EnvironmentOptions& environment) const;
+    /// Reads all maps, and says of each what is noted, once. Throws as load_map.
+    LoadedMaps load(const input::ProbeOptions& reading, const builder::TargetOptions& target, const Note& note,
+                    const build::Progress& progress) const;
     Converted convert(const input::ProbeOptions& reading, const builder::EnvironmentOptions& environment,
                       const Listener& listener) const;
 

@@ -4,6 +4,7 @@
 #include "input/file_name.h"
 #include "tools/cli/comma_list.h"
 #include "tools/cli/help.h"
+#include "tools/cli/map_options.h"
 #include "tools/cli/mesh_visibility.h"
 #include "tools/cli/messages.h"
 #include "tools/cli/number_range.h"
@@ -17,7 +18,9 @@
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
 #include "tools/sweep/advice.h"
+#include "tools/sweep/build.h"
 #include "tools/sweep/files.h"
+#include "tools/sweep/maps.h"
 #include "tools/sweep/page.h"
 #include "tools/sweep/renderers.h"
 #include "tools/sweep/sweep.h"
@@ -38,8 +41,10 @@ namespace {
 namespace fs = std::filesystem;
 
 struct SweepArguments {
-    std::string source, folder;
+    std::vector<std::string> sources; ///< several: maps for one file
+    std::string source, folder;       ///< the only source, or the first map
     std::vector<std::string> budgets;
+    MapOptions maps;
     input::ProbeOptions input;
     SweepOptions sweep;
     SceneOption scene; ///< of visibility
@@ -62,13 +67,19 @@ SweepKind kind_of(const std::string& source) {
     return SweepKind::probe;
 }
 
-void check_options(SweepArguments& options, SweepKind kind) {
+/// What every sweep takes.
+void take_common_options(SweepArguments& options) {
     for (const std::string& text : options.budgets) {
         const auto bytes = parse_size(text);
         if (!bytes || *bytes == 0) throw CLI::ValidationError("--budgets", "needs sizes such as 16KiB,64KiB,1MB");
         options.sweep.budgets.push_back(*bytes);
     }
     std::sort(options.sweep.budgets.begin(), options.sweep.budgets.end());
+    options.sweep.timing = !options.no_timing;
+    options.sweep.visible.threshold /= 100.0; // it is given in per cent
+}
+
+void check_options(SweepArguments& options, SweepKind kind) {
     std::vector<std::string> names = brdf_files();
     if (kind == SweepKind::probe) {
         names.clear();
@@ -92,14 +103,31 @@ void check_options(SweepArguments& options, SweepKind kind) {
     if (kind != SweepKind::brdf && target.channels.mode == ACDF_CHANNELS_SEPARATE)
         throw CLI::ValidationError("--channel",
                                    "is one channel in a sweep of probes: the baselines are defined for one");
-    options.sweep.timing = !options.no_timing;
-    options.sweep.visible.threshold /= 100.0; // it is given in per cent
+}
+
+/// `source`, and whether there are several maps for one file.
+bool take_sources(SweepArguments& options) {
+    if (options.maps.given(options.sources)) {
+        options.maps.take(options.sources);
+        options.source = options.maps.files()[0];
+        for (const char* option :
+             {"--files", "--scene", "--faces", "--heuristic", "--sequence", "--shadow-ray-ns", "--scene-up"})
+            if (options.given(option)) throw CLI::ValidationError(option, "is for a sweep of one map");
+        return true;
+    }
+    for (const char* option : {"--sun", "--no-sun"})
+        if (options.given(option)) throw CLI::ValidationError(option, "is for several maps (--axis)");
+    if (options.sources.size() > 1)
+        throw CLI::ValidationError("SOURCE", "is given once; several maps for one file need --axis");
+    options.source = options.sources[0];
+    return false;
 }
 
 /// What has to be repeated to the subcommand that makes a file; `on_latlong_grid`: that grid, which the probe has
 /// not.
 std::string input_text(const SweepArguments& options, bool on_latlong_grid) {
-    std::string text = shell_word(options.source);
+    std::string text;
+    for (const std::string& source : options.sources) text += (text.empty() ? "" : " ") + shell_word(source);
     const auto add = [&](const char* option, const std::string& value) {
         if (options.given(option)) text += std::string(" ") + option + " " + value;
     };
@@ -117,6 +145,10 @@ std::string input_text(const SweepArguments& options, bool on_latlong_grid) {
     add("--on-black", options.input.uniform_if_black ? "uniform" : "error");
     add("--filter", build::filter_name(options.sweep.target.filter));
     if (options.given("--channel")) add("--channel", options.command->get_option("--channel")->as<std::string>());
+    for (const char* option : {"--axis", "--sun"})
+        for (const std::string& value : options.command->get_option(option)->results())
+            text += std::string(" ") + option + " " + shell_word(value);
+    if (options.given("--no-sun")) text += " --no-sun";
     return text;
 }
 
@@ -215,7 +247,57 @@ std::string advice_text(const Sweep& sweep) {
     return out;
 }
 
+MapSweep make_map_sweep(SweepArguments& options) {
+    constexpr double kReading = 0.2; // of the time, about
+    ProgressBar bar(options.quiet);
+    const build::Progress progress = bar.callback();
+    const LoadedMaps loaded =
+        options.maps.load(options.input, options.sweep.target, notes_of(options.source, options.quiet),
+                          part_of(progress, 0.0, kReading));
+    builder::EnvironmentOptions each;
+    each.target = options.sweep.target;
+    builder::IndexedOptions one = options.maps.options(options.input, each);
+    one.source = loaded.source;
+    MapSweep sweep;
+    sweep.sources = options.sources;
+    sweep.input = input_text(options, false);
+    sweep.output = "maps";
+    sweep.maps = loaded.maps.size();
+    sweep.visible = options.sweep.visible;
+    sweep.timed = options.sweep.timing;
+    try {
+        sweep_maps(loaded.maps, one, options.sweep, part_of(progress, kReading, 1.0 - kReading), sweep);
+    } catch (const std::invalid_argument& error) {
+        throw Failure(options.source + ": " + error.what());
+    }
+    return sweep;
+}
+
+void run_maps(SweepArguments& options) {
+    const auto limit = limit_threads(options.threads);
+    const OutputFolder folder(options.folder);
+    const auto path = [&](const char* name) { return (fs::path(options.folder) / name).string(); };
+    // All refuse early, before the work.
+    Output csv(path("sweep.csv"), options.force, options.maps.files());
+    Output json(path("sweep.json"), options.force, options.maps.files());
+
+    const MapSweep sweep = make_map_sweep(options);
+    const std::string text = maps_json(sweep);
+    csv.write(maps_csv(sweep));
+    json.write(text);
+    csv.commit();
+    json.commit();
+
+    const MapAdvice advice = advise(sweep);
+    if (options.json) std::fputs(text.c_str(), stdout);
+    else if (!options.quiet)
+        put(advice.sentence + "\n  " + advice.command + "\nThe figures are in " + path("sweep.csv") + " and " +
+            path("sweep.json") + "\n");
+}
+
 void run(SweepArguments& options) {
+    take_common_options(options);
+    if (take_sources(options)) return run_maps(options);
     const SweepKind kind = kind_of(options.source);
     check_options(options, kind);
     const auto limit = limit_threads(options.threads);
@@ -320,8 +402,9 @@ void add_sweep(CLI::App& program, int& exit_code) {
     options->command = &command;
     command
         .add_option(
-            "SOURCE", options->source,
-            "An environment map, or a BRDF: MERL .binary, RGL .bsdf, .npy, or a model such as ggx:alpha=0.1")
+            "SOURCE", options->sources,
+            "An environment map, or a BRDF: MERL .binary, RGL .bsdf, .npy, or a model such as ggx:alpha=0.1. With "
+            "--axis all maps for one file; a sequence is sky.####.exr")
         ->required()
         ->type_name("")
         ->group("Input");
@@ -330,6 +413,7 @@ void add_sweep(CLI::App& program, int& exit_code) {
     add_domain(command, options->input.domain);
     add_repairs(command, options->input);
     add_sweep_options(command, *options);
+    options->maps.add(command);
     add_target_options(command, options->sweep.target);
     CLI::Option& channel = *command.get_option("--channel");
     channel.description(channel.get_description() + ". Baselines of probes are defined for one channel: not rgb");
@@ -348,10 +432,12 @@ void add_sweep(CLI::App& program, int& exit_code) {
         "Writes report.html, one page without network or scripts: which file to make for each kind of renderer, "
         "plots, "
         "pictures, and where a baseline is better. sweep.csv and sweep.json have the figures. All files that are "
-        "compared are made in memory.",
+        "compared are made in memory. Of several maps there are only figures: of one file at several sizes, and of "
+        "a file for each map with as many bytes in all.",
         "acdf sweep probe.exr -o out\n"
         "acdf sweep probe.exr -o out --scene room.obj\n"
         "acdf sweep probe.exr -o out --files local,local-fast --budgets 64KiB,256KiB,1MB\n"
+        "acdf sweep 'day.####.exr' -o out --budgets 16KiB,64KiB\n"
         "acdf sweep nickel.binary -o out --spp 16\n"
         "acdf sweep ggx:alpha=0.1 -o out --files variance,cdf --no-timing"));
     command.callback([options, &exit_code] {

@@ -37,12 +37,27 @@ std::uint32_t HalvingCodes::lower(std::uint32_t wide, std::uint32_t code) const 
     return wide > 0 ? acdf_halving_threshold(&steps, code, bits_, shares_[code]) : 0;
 }
 
+std::uint32_t HalvingCodes::nearest(double share) const {
+    std::uint32_t code = guesses_[std::min(static_cast<std::uint32_t>(share * kGuesses), kGuesses - 1)];
+    while (borders_[code] < share) ++code;
+    return code;
+}
+
+double HalvingCodes::least(double least_a, double least_b) const {
+    if (!(least_a > 0.0) || !(least_b > 0.0)) return least_a + least_b;
+    const std::uint32_t middle = nearest(least_a / (least_a + least_b));
+    double out = std::numeric_limits<double>::infinity();
+    for (std::uint32_t code = std::max(middle, 2u) - 1; code <= std::min(middle + 1, last() - 1); ++code) {
+        const double share = shares_[code] * 0x1p-31; // thresholds are rounded down
+        out = std::min(out, std::max((least_a + 1.0) / share, least_b / (1.0 - share)));
+    }
+    return out;
+}
+
 std::uint32_t HalvingCodes::best(std::uint32_t wide, double a, double b, double least_a, double least_b) const {
     if (!(a > 0.0)) return 0;
     if (!(b > 0.0)) return last();
-    const double share = a / (a + b);
-    std::uint32_t code = guesses_[std::min(static_cast<std::uint32_t>(share * kGuesses), kGuesses - 1)];
-    while (borders_[code] < share) ++code;
+    std::uint32_t code = nearest(a / (a + b));
     while (code + 1 < last() && lower(wide, code) < least_a) ++code;
     while (code > 1 && wide - lower(wide, code) < least_b) --code;
     return code;

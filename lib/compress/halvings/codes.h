@@ -20,8 +20,12 @@ public:
     /// The code that makes a^2 / p + b^2 / (1 - p) smallest, of those that leave the halves so many steps; the
     /// first or the last where a or b is 0.
     std::uint32_t best(std::uint32_t wide, double a, double b, double least_a, double least_b) const;
+    /// How many steps a node has at least, so that some code leaves its halves so many: more than their sum, for
+    /// codes are coarse. best() then leaves them.
+    double least(double least_a, double least_b) const;
 
 private:
+    std::uint32_t nearest(double share) const;
     std::uint32_t last() const { return static_cast<std::uint32_t>(shares_.size()) - 1; }
 
     std::uint32_t bits_;

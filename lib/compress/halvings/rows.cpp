@@ -67,7 +67,7 @@ CodedRow RowTree::row(const HalvingCodes& codes, const std::vector<double>& part
             least[i] = weights[i] > 0.0 ? kStepsOfFloats : 0.0;
         } else {
             weights[i] = weights[i + 1] + weights[upper_[i]];
-            least[i] = least[i + 1] + least[upper_[i]];
+            least[i] = codes.least(least[i + 1], least[upper_[i]]);
         }
     }
     CodedRow out;

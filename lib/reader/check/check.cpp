@@ -223,7 +223,7 @@ void check_required(const ChunkTable& table, u32 kind, Report& report) {
                        : halved && kind == ACDF_KIND_LOCAL ? required_of_normals
                                                            : required_types;
     u32 count = sizeof required_types / sizeof *required_types;
-    if (halved && kind == ACDF_KIND_ENVIRONMENT) count = required_beside_halvings;
+    if (halved && types == required_types) count = required_beside_halvings;
     for (u32 i = 0; i < count; ++i)
         if (!has_chunk(table, types[i]))
             report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(types[i]).text);

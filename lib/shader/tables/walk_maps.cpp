@@ -2,6 +2,8 @@
 
 #include "shader/tables/walk_cells.h"
 
+#include <initializer_list>
+
 namespace acdf {
 
 namespace {

@@ -138,12 +138,27 @@ TEST(PointsWithoutNormal, OfOtherGoals) {
 TEST(PointsWithoutNormal, BesideEveryPartner) {
     for (const AcdfPartnerKind kind : {ACDF_PARTNER_COSINE, ACDF_PARTNER_BRDF})
         for (const AcdfHeuristic heuristic : {ACDF_HEURISTIC_BALANCE, ACDF_HEURISTIC_POWER}) {
-            builder::LocalOptions options = of_budget(48 << 10, builder::LocalShape::automatic);
+            builder::LocalOptions options = of_budget(48 << 10, builder::LocalShape::small);
             options.mis.kind = kind;
             options.mis.heuristic = heuristic;
             expect_serves_points(options, "beside " + std::to_string(int(kind)));
             if (acdf_test::kSanitized) return;
         }
+}
+
+// Cells of halvings follow what the partner leaves over: a share of all light stays.
+TEST(PointsWithoutNormal, OfHalvingsBesideTheCosine) {
+    builder::LocalOptions options = of_budget(48 << 10, builder::LocalShape::halvings);
+    options.mis.kind = ACDF_PARTNER_COSINE;
+    for (const bool square : {false, true}) {
+        const MadeLocal made(sky(square), options);
+        ASSERT_FALSE(made.local.bytes.empty());
+        const build::Accuracy whole = build::measure_whole(made.file, builder::grid_of(sky(square)));
+        EXPECT_EQ(whole.support_violations, 0u);
+        EXPECT_LT(whole.relative_variance, 0.5);
+        EXPECT_LT(whole.max_weight, 15.0);
+        expect_samples_agree(made.file.local().environment());
+    }
 }
 
 TEST(PointsWithoutNormal, OfBinsThatShareNothing) {

@@ -4,6 +4,7 @@
 #include "tests/lib/reader/indexed_builder.h"
 #include "tests/lib/shader/walked_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

@@ -14,7 +14,7 @@ namespace {
 constexpr int kRadiances = 128;      // of radiances, each the square root of 2 times the one before
 constexpr double kFirst = -24.0;     // the first, as an exponent of 2
 constexpr std::uint32_t kAcross = 4; // blocks across a cell whose thresholds are kept
-constexpr double kLeastOfAll = 0.02; // of the samples of all light alone, those that stay whatever the partner has
+constexpr double kLeastOfAll = 0.1;  // of the samples of all light alone, those that stay whatever the partner has
 
 std::uint32_t step_of(double light) {
     return static_cast<std::uint32_t>(std::clamp(2.0 * (std::log2(light) - kFirst), 0.0, kRadiances - 1.0));

@@ -20,6 +20,9 @@ constexpr std::size_t kMostTop = 16384;
 constexpr std::size_t kCountedHalvings = 500; // at the top, by which codes of rows are counted
 // Beside a partner: 8 subdivisions at 128 KiB and 12 at 1 MB.
 constexpr double kFilledSubdivisions = 8.0, kFilledAt = 131072.0, kFilledRises = 0.2, kFilledFewBits = 400e3;
+// Beside a partner cells are worth little until they part what is brighter than a threshold from what is not: gains
+// do not foretell it, and a tile has at least so many cells.
+constexpr std::size_t kFewestCells = 4;
 constexpr double kFewestRows = 387.0, kFewestAt = 1048576.0, kFewestFalls = 0.6; // rows that a size has at least
 
 std::size_t words(std::size_t bits) { return (bits + 31) / 32 * 4; }
@@ -185,12 +188,21 @@ std::size_t LocalHalvingsFitter::codes_of(const std::vector<HalvedNode>& top, co
     return codes;
 }
 
-std::vector<double> LocalHalvingsFitter::weights_of(const std::vector<HalvedNode>& nodes) const {
-    std::vector<double> out(nodes.size());
+std::vector<double> LocalHalvingsFitter::weights_of(const std::vector<HalvedNode>& nodes, std::size_t top) const {
+    std::vector<double> out(nodes.size()), moments(nodes.size()); // of the light alone
+    const std::size_t below = 2 * top + 1;
     for (std::size_t i = nodes.size(); i-- > 0;) {
         const std::uint32_t lower = nodes[i].lower;
-        if (lower) out[i] = out[lower] + out[lower + 1];
-        else out[i] = filled_costs_ ? filled_costs_->weight(nodes[i].box) : shared_->alone(nodes[i].box);
+        if (lower) {
+            out[i] = out[lower] + out[lower + 1];
+            moments[i] = moments[lower] + moments[lower + 1];
+        } else {
+            const double alone = shared_->alone(nodes[i].box);
+            out[i] = filled_costs_ ? filled_costs_->weight(nodes[i].box) : alone;
+            moments[i] = out[i] > 0.0 ? alone * (alone / out[i]) : 0.0;
+        }
+        // Above tiles only points without a normal follow the codes that all share, without a partner.
+        if (i < below && (lower == 0 || lower >= below)) out[i] = std::sqrt(moments[i] * out[i]);
     }
     return out;
 }
@@ -265,7 +277,7 @@ LocalHalvings LocalHalvingsFitter::grown(std::vector<HalvedNode> top, std::size_
     const std::size_t halvings = top.size() / 2;
     HalvedGrowth growth({{0, all + 1}}, {kAlike});
     growth.run_below(std::move(top), below(), Loop(false), [&](double share) { progress(0.6 * share); });
-    const RowTree tree(growth.nodes(), halvings, weights_of(growth.nodes()),
+    const RowTree tree(growth.nodes(), halvings, weights_of(growth.nodes(), halvings),
                        {target_.row_axis, target_.column_axis});
     progress(0.7);
     LocalHalvings out;
@@ -280,11 +292,13 @@ LocalHalvings LocalHalvingsFitter::fit(const NormalBins& bins, const LocalHalvin
                                        const Progress& progress) {
     const HalvedGrowth& whole_top = grown_top(size.top);
     std::size_t halvings = std::min({size.top, size.halvings, whole_top.leaves() - 1}), codes = 0;
+    const bool partner = ratio_ > 0.0;
     std::vector<HalvedNode> top;
     for (;; halvings = halvings * 3 / 4) {
         top = first_halvings(whole_top.nodes(), halvings);
         codes = codes_of(top, bins);
-        if (bytes_of(halvings, codes, size.code_bits) <= size.bytes) break;
+        const std::size_t least = partner ? std::min(kFewestCells * halvings, target_.values.size() - 1) : halvings;
+        if (bytes_of(std::max(least, halvings), codes, size.code_bits) <= size.bytes) break;
         if (halvings == 0) throw std::runtime_error("no tree fits into the budget");
     }
     const auto attempt = [&](std::size_t most_codes, double begin, double end) {
@@ -293,7 +307,6 @@ LocalHalvings LocalHalvingsFitter::fit(const NormalBins& bins, const LocalHalvin
             if (progress) progress(begin + share * (end - begin));
         });
     };
-    const bool partner = ratio_ > 0.0;
     LocalHalvings out = attempt(codes, 0.2, partner ? 0.6 : 1.0);
     // Beside a partner rows have fewer codes than they might: what those leave is for halvings that all share.
     const std::size_t used = codes_in(out);

@@ -72,7 +72,7 @@ private:
     std::size_t codes_of(const std::vector<HalvedNode>& top, const NormalBins& bins) const;
     LocalHalvings grown(std::vector<HalvedNode> top, std::size_t all, const NormalBins& bins,
                         std::uint32_t code_bits, const Progress& progress) const;
-    std::vector<double> weights_of(const std::vector<HalvedNode>& nodes) const;
+    std::vector<double> weights_of(const std::vector<HalvedNode>& nodes, std::size_t top) const;
     void mixed(const RowTree& tree, const std::vector<HalvedNode>& nodes, const NormalBins& bins,
                LocalHalvings& out) const;
     void filled(const RowTree& tree, const std::vector<HalvedNode>& nodes, const NormalBins& bins,

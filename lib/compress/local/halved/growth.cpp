@@ -120,7 +120,7 @@ std::vector<std::uint32_t> blocks_of_texels(const std::vector<double>& borders) 
 }
 
 SharedLight::SharedLight(const Blocks& blocks, std::vector<float> worth, double unit)
-    : blocks_(blocks), worth_(std::move(worth)), unit_(unit) {
+    : blocks_(blocks), worth_(std::move(worth)) {
     const Target& grid = blocks.grid();
     const std::vector<std::uint32_t> row = blocks_of_texels(blocks.borders(0)),
                                      column = blocks_of_texels(blocks.borders(1));
@@ -129,7 +129,7 @@ SharedLight::SharedLight(const Blocks& blocks, std::vector<float> worth, double 
         const float* of_row = worth_.data() + blocks.index({blocks.rows() + row[r], blocks.columns()});
         for (std::uint32_t c = 0; c < grid.columns; ++c)
             values_[std::size_t{r} * grid.columns + c] =
-                positive_float(double{grid.row(r)[c]} * double{of_row[column[c]]});
+                positive_float(double{grid.row(r)[c]} * unit * double{of_row[column[c]]});
     });
     Grid of = grid_of(grid);
     of.values = values_.data();

@@ -70,12 +70,11 @@ public:
     /// Root of a box's measure times the integral of the square of light.
     double alone(HalvedBox box) const { return costs_->alone(box) / (double{worth(box)} * cost_unit()); }
     /// What costs are multiplied with, beside those of the top.
-    double cost_unit() const { return costs_->unit() / unit_; }
+    double cost_unit() const { return costs_->unit(); }
 
 private:
     const Blocks& blocks_;
     std::vector<float> worth_; ///< of blocks
-    double unit_;
     std::vector<float> values_;
     std::unique_ptr<HalvedSums> costs_;
 };

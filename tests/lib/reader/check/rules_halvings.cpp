@@ -92,7 +92,6 @@ std::vector<Case> halvings_cases() {
              table.chunks.push_back(halved().file().chunks[1]);
              return table.encode();
          }},
-        {3013, "halvings_of_a_local_environment", beside(shared_local().file())},
         {3013, "halvings_of_a_brdf",
          [] {
              EnvironmentSpec spec = halved();

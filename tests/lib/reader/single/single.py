@@ -16,9 +16,10 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 STRICT = ["-std=c++17", "-fno-exceptions", "-fno-rtti", "-Wall", "-Wextra", "-Werror"]
 ENVIRONMENTS = "-DACDF_ENVIRONMENT_ONLY"
-# What the profile of environments and the whole, of five kinds, take at most: lines, bytes.
-MOST_LINES = {"environments": 2390, "whole": 12020}
-MOST_BYTES = {"environments": 25000, "environments of the whole": 147000, "all kinds": 234500}
+# What the profile of environments and the whole, of five kinds and three shapes of local environments, take at most:
+# lines, bytes.
+MOST_LINES = {"environments": 2390, "whole": 12770}
+MOST_BYTES = {"environments": 25000, "environments of the whole": 156000, "all kinds": 256500}
 OPEN_AND_SAMPLE = """
 #include "acdf.h"
 int main(int count, char** names) {
