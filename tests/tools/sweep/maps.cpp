@@ -79,8 +79,8 @@ TEST(SweepOfMaps, AdvisesTheSmallestSizeWithoutVisibleNoise) {
     EXPECT_FALSE(large["reached"]);
     const std::string words =
         "acdf env " + maps[0] + " " + maps[1] + " " + maps[2] + " --axis time=6,9,12 -o maps.acdf";
-    EXPECT_EQ(small["command"], words + " --budget 6000");
-    EXPECT_EQ(large["command"], words + " --budget 12000");
+    EXPECT_EQ(small["command"], words + " --budget 6kB");
+    EXPECT_EQ(large["command"], words + " --budget 12kB");
 }
 
 TEST(SweepOfMaps, RefusesWhatDoesNotFit) {
