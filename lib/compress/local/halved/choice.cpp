@@ -24,7 +24,10 @@ constexpr std::size_t kSmoothed = 50; // halvings at the top over which gains ar
 
 double rows_of(std::uint32_t subdivisions) { return 4.0 * subdivisions * subdivisions + 2.0; }
 
-double halvings_for(double bytes, double row_bits) { return bytes * 8.0 / (row_bits + kSharedBits - 8.0); }
+/// No more than fit into any file, so that counts can be integers.
+double halvings_for(double bytes, double row_bits) {
+    return std::min(bytes * 8.0 / (row_bits + kSharedBits - 8.0), double{ACDF_MOST_HALVINGS});
+}
 
 /// What halvings gain in the order in which they are made, as it falls.
 std::vector<double> falling_gains(const HalvedGrowth& growth, std::size_t roots, std::size_t smoothed) {
@@ -127,7 +130,7 @@ std::size_t choose_top(const HalvedGrowth& top, const HalvedCosts& below, double
     for (const HalvedNode& node : first_halvings(top.nodes(), within(0.7)))
         if (node.lower == 0 && tiles++ % kSampled == 0) some.push_back(node);
     const std::size_t roots = some.size();
-    HalvedGrowth shared({{0, roots + static_cast<std::size_t>(bytes * 8.0 / kSharedBits / kSampled)}});
+    HalvedGrowth shared({{0, roots + static_cast<std::size_t>(halvings_for(bytes, 8.0) / kSampled)}});
     shared.run_below(std::move(some), below, Loop(false), {});
     const std::vector<double> of_top = falling_gains(top, 1, kSmoothed),
                               of_shared = falling_gains(shared, roots, 1);
