@@ -40,8 +40,8 @@ public:
         return payload_.size == size;
     }
 
-    // `nodes` has room for all halvings. False where they are no tree.
-    bool make_nodes(AcdfHalving* nodes) {
+    // `nodes` has room for all halvings. Only a whole tree becomes part of `parts`: other chunks go through it.
+    void make_nodes(AcdfHalving* nodes, Parts& parts) {
         const u64 codes_begin = sizeof header_ + 4 * structure_words();
         Bits structure(payload_, sizeof header_, codes_begin), codes(payload_, codes_begin, payload_.size);
         for (u32 code = 0; code < 1u << header_.code_bits; ++code)
@@ -55,14 +55,14 @@ public:
         open_[0] = root;
         open_count_ = 1;
         while (open_count_ > 0)
-            if (!take_node(structure, codes, nodes)) return false;
-        if (made_ != header_.halving_count) {
-            report_.add(6031, structure.place(), "%u nodes are halved, not %u", made_, header_.halving_count);
-            return false;
-        }
+            if (!take_node(structure, codes, nodes)) return;
+        if (made_ != header_.halving_count)
+            return report_.add(6031, structure.place(), "%u nodes are halved, not %u", made_,
+                               header_.halving_count);
+        parts.halvings = nodes;
+        parts.halving_count = made_;
         check_zero(structure, "structure");
         check_zero(codes, "codes");
-        return true;
     }
 
 private:
@@ -155,10 +155,7 @@ void check_halvings(const Payload& payload, Report& report, const AcdfAllocator&
     parts.halvings_block = take_block(allocator, bytes);
     if (!parts.halvings_block.data)
         return report.add(1003, payload.at(0), "%llu bytes for nodes", static_cast<ull>(bytes));
-    auto* const nodes = static_cast<AcdfHalving*>(parts.halvings_block.data);
-    if (!checker.make_nodes(nodes)) return; // other chunks go through no half-made tree
-    parts.halvings = nodes;
-    parts.halving_count = count;
+    checker.make_nodes(static_cast<AcdfHalving*>(parts.halvings_block.data), parts);
 }
 
 } // namespace acdf
