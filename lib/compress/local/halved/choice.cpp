@@ -19,6 +19,7 @@ constexpr double kMixingLeft = 0.8;                     // of what it adds, once
 constexpr std::size_t kMixingHalvings = 500, kEach = 3; // tiles, and of mixtures one in so many
 constexpr double kUsualTop = 0.75, kLeastTop = 0.2;     // of the bytes, for codes of rows
 constexpr std::uint32_t kLeastSubdivisions = 3, kMostSubdivisions = 20;
+constexpr double kLeastLeft = 0.25;   // of the bytes, for all but bins
 constexpr std::size_t kSampled = 8;   // one in so many tiles is divided to see what that gains
 constexpr std::size_t kSmoothed = 50; // halvings at the top over which gains are averaged
 
@@ -104,6 +105,7 @@ RowSize choose_rows(const HalvedGrowth& top, double mixing, double bytes, double
     for (std::uint32_t n = fixed ? fixed : kLeastSubdivisions; n <= (fixed ? fixed : kMostSubdivisions); ++n)
         for (const std::uint32_t bits : {6u, 7u, 8u}) {
             const double left = std::max(0.0, bytes - of_bin * rows_of(n));
+            if (!fixed && n > kLeastSubdivisions && left <= kLeastLeft * bytes) continue;
             const auto halvings =
                 std::min(static_cast<std::size_t>(halvings_for(kUsualTop * left, rows_of(n) * bits * kSeen)),
                          top.leaves() - 1);

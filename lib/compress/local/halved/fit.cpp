@@ -143,7 +143,8 @@ RowSize LocalHalvingsFitter::rows_for(double bytes, double of_bin, std::uint32_t
         return {fixed ? fixed : static_cast<std::uint32_t>(std::clamp(std::lround(n), 3l, 20l)),
                 bytes < kFilledFewBits ? 6u : 7u};
     }
-    const double rows = fixed ? 4.0 * fixed * fixed + 2.0 : kFewestRows * std::pow(bytes / kFewestAt, kFewestFalls);
+    const double rows =
+        fixed ? 4.0 * fixed * fixed + 2.0 : std::max(1.0, kFewestRows * std::pow(bytes / kFewestAt, kFewestFalls));
     const HalvedGrowth& top =
         grown_top(static_cast<std::size_t>(std::min(bytes * 8.0 / (rows * 6.0 * 0.5), 1e9)) + 1);
     if (!mixing_) mixing_ = mixing_variance(blocks_, light_, top.nodes(), octahedral_bins(8));
