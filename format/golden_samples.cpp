@@ -28,16 +28,20 @@ std::vector<std::pair<double, double>> random_numbers() {
 constexpr float kNormals[][3] = {{0, 0, 1},  {1, 0, 0},    {-1, -0.001f, 0.5f}, {0.3f, -0.7f, -0.2f},
                                  {-2, 1, 1}, {0, 0.5f, -5}};
 
+/// Of a normal, or of coordinates among maps.
+std::string sample_line(const float at[3], double u0, double u1, const acdf::DirectionSample& s) {
+    char line[300];
+    std::snprintf(line, sizeof line, "%a %a %a  %a %a  %a %a %a  %a\n", double{at[0]}, double{at[1]}, double{at[2]},
+                  u0, u1, double{s.direction[0]}, double{s.direction[1]}, double{s.direction[2]}, double{s.pdf});
+    return line;
+}
+
 std::string local_samples(const acdf::LocalEnvironmentView& view) {
     std::string text;
     for (const auto& n : kNormals)
         for (const auto& [u0, u1] : random_numbers()) {
             const acdf::DirectionSample s = view.sample(n, u0, u1);
-            char line[300];
-            std::snprintf(line, sizeof line, "%a %a %a  %a %a  %a %a %a  %a\n", double{n[0]}, double{n[1]},
-                          double{n[2]}, u0, u1, double{s.direction[0]}, double{s.direction[1]},
-                          double{s.direction[2]}, double{s.pdf});
-            text += line;
+            text += sample_line(n, u0, u1, s);
         }
     return text;
 }
@@ -89,11 +93,7 @@ std::string indexed_samples(const acdf::IndexedEnvironment& view) {
     for (const auto& t : kCoordinates)
         for (const auto& [u0, u1] : random_numbers()) {
             const acdf::DirectionSample s = view.at(double{t[0]}, double{t[1]}, double{t[2]}).sample(u0, u1);
-            char line[300];
-            std::snprintf(line, sizeof line, "%a %a %a  %a %a  %a %a %a  %a\n", double{t[0]}, double{t[1]},
-                          double{t[2]}, u0, u1, double{s.direction[0]}, double{s.direction[1]},
-                          double{s.direction[2]}, double{s.pdf});
-            text += line;
+            text += sample_line(t, u0, u1, s);
         }
     return text;
 }

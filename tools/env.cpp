@@ -36,7 +36,7 @@ constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kPartnerMemory = 24 << 20
 constexpr std::uint64_t kSumsOfTexel = 16, kPartnerOfTexel = 28, kCurvesOfTexel = 8;
 // A tree while it is grown. A cell takes 9 bits of a file at least.
 constexpr std::uint64_t kMemoryOfCell = 110, kBitsOfCell = 9;
-// Of several maps: their texels and what is left of them without the sun, and the most that sums of all take.
+// Bytes of several maps: a texel of the map and of the map without its sun, and the most that sums of all take.
 constexpr std::uint64_t kMapOfTexel = 8, kSumsOfMaps = 256 << 20;
 /// Cells that a variance takes of nearly all maps, times it.
 constexpr double kCellsOfVariance = 4000.0;

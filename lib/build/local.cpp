@@ -1,6 +1,5 @@
 #include "build/local.h"
 
-#include "build/compressed_budget.h"
 #include "build/errors.h"
 #include "build/lit_bins.h"
 #include "build/local_draft.h"
@@ -250,13 +249,7 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
         const auto build = [&](std::uint64_t bytes) { return build_with(bytes, progress); };
         if (options.codec == ACDF_CODEC_NONE)
             return within_reach(budget, build, [&](std::uint64_t bytes) { return build_with(bytes, {}); });
-        try {
-            return fill_compressed(budget, build);
-        } catch (const OutOfReach& plain) { // compressed, the least may be small enough
-            Local made = build(plain.least);
-            if (made.bytes.size() > budget) throw OutOfReach(budget, made.bytes.size() + kSlack);
-            return made;
-        }
+        return compressed_local(budget, build);
     });
 }
 

@@ -1,5 +1,6 @@
 #include "build/local_draft.h"
 
+#include "build/compressed_budget.h"
 #include "build/text/options.h"
 
 #include <algorithm>
@@ -81,8 +82,18 @@ Local finish(compress::Description description, const Store& store, const compre
     return out;
 }
 
+Local compressed_local(std::uint64_t budget, const std::function<Local(std::uint64_t bytes)>& build) {
+    try {
+        return fill_compressed(budget, build);
+    } catch (const OutOfReach& plain) { // compressed, the least may be small enough
+        Local made = build(plain.least);
+        if (made.bytes.size() > budget) throw OutOfReach(budget, made.bytes.size() + kSlack);
+        return made;
+    }
+}
+
 Local smallest_of_variance(double variance, const std::function<std::optional<Local>(double bytes)>& at,
-                           const std::function<void(double share)>& told) {
+                           const std::function<void(double share)>& progress) {
     const auto reaches = [&](const std::optional<Local>& made) {
         return made && made->accuracy.relative_variance <= variance;
     };
@@ -107,7 +118,7 @@ Local smallest_of_variance(double variance, const std::function<std::optional<Lo
         best = std::move(less);
     }
     for (int step = 0; step < 7; ++step) {
-        told(0.3 + 0.1 * step);
+        progress(0.3 + 0.1 * step);
         const double middle = std::sqrt(low * high);
         if (std::optional<Local> candidate = at(middle); reaches(candidate)) {
             high = middle;

@@ -41,9 +41,13 @@ using Store = std::function<std::vector<std::uint8_t>(const compress::Descriptio
 Local finish(compress::Description description, const Store& store, const compress::Target& target,
              const Source& source, const LocalOptions& options, const compress::NormalBins& bins);
 
+/// The largest compressed file of at most `budget` bytes; `build(bytes)` takes at most so many before compression.
+/// Throws OutOfReach.
+Local compressed_local(std::uint64_t budget, const std::function<Local(std::uint64_t bytes)>& build);
+
 /// The smallest file whose measured variance is at most that of the goal. `at(bytes)` makes one of at most so many;
 /// nothing: there is none.
 Local smallest_of_variance(double variance, const std::function<std::optional<Local>(double bytes)>& at,
-                           const std::function<void(double share)>& told);
+                           const std::function<void(double share)>& progress);
 
 } // namespace acdf::build

@@ -1,6 +1,5 @@
 #include "build/local_halved.h"
 
-#include "build/compressed_budget.h"
 #include "build/local_draft.h"
 #include "compress/local/halved/fit.h"
 
@@ -27,13 +26,7 @@ public:
     Local of_budget(std::uint64_t budget, const Progress& progress) {
         const auto build = [&](std::uint64_t bytes) { return of_bytes(bytes, progress); };
         if (options_.codec == ACDF_CODEC_NONE) return build(budget);
-        try {
-            return fill_compressed(budget, build);
-        } catch (const OutOfReach& plain) { // compressed, the least may be small enough
-            Local made = build(plain.least);
-            if (made.bytes.size() > budget) throw OutOfReach(budget, made.bytes.size() + kSlack);
-            return made;
-        }
+        return compressed_local(budget, build);
     }
 
     Local of_cells(std::uint64_t cells, const Progress& progress) {

@@ -1,5 +1,7 @@
 #include "compress/halvings/rows.h"
 
+#include "compress/halvings/bit_writer.h"
+
 #include <acdf/halvings.h>
 #include <acdf/layout.h>
 
@@ -86,6 +88,16 @@ CodedRow RowTree::row(const HalvingCodes& codes, const std::vector<double>& part
         steps[upper] = steps[i] - steps[lower];
     }
     return out;
+}
+
+void put_rows(const std::vector<bool>& has_codes, const std::vector<std::vector<std::uint16_t>>& rows,
+              std::uint32_t code_bits, std::vector<std::uint8_t>& bytes) {
+    BitWriter bits(bytes);
+    for (const bool own : has_codes) bits.put(own, 1);
+    bits.pad();
+    for (const std::vector<std::uint16_t>& row : rows)
+        for (const std::uint16_t code : row) bits.put(code, code_bits);
+    bits.pad();
 }
 
 } // namespace acdf::compress

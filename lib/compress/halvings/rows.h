@@ -61,4 +61,8 @@ private:
     std::vector<std::uint32_t> upper_; ///< of nodes at the top in preorder, the lower half being the next; kTile
 };
 
+/// Appends them as chunks MAPS and NORM have them: a bit a halving, whether it has codes of rows, then the codes.
+void put_rows(const std::vector<bool>& has_codes, const std::vector<std::vector<std::uint16_t>>& rows,
+              std::uint32_t code_bits, std::vector<std::uint8_t>& bytes);
+
 } // namespace acdf::compress

@@ -57,7 +57,7 @@ private:
     SquareRows square_rows_;
     LeftRows left_rows_;
     HalvedTable squares_;
-    std::optional<HalvedTable> left_; ///< what is left to the partner
+    std::optional<HalvedTable> left_; ///< light that the partner leaves over
     double least_square_ = 0.0, mean_ = 0.0;
 };
 

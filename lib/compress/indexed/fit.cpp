@@ -126,12 +126,7 @@ std::vector<std::uint8_t> maps_chunk(const IndexedTree& tree, const std::vector<
     append(&header, sizeof header);
     append(coordinates.data(), coordinates.size() * sizeof(double));
     append(maps.data(), maps.size() * sizeof(AcdfMap));
-    BitWriter bits(bytes);
-    for (const bool own : tree.has_codes) bits.put(own, 1);
-    bits.pad();
-    for (const std::vector<std::uint16_t>& row : tree.rows)
-        for (const std::uint16_t code : row) bits.put(code, tree.code_bits);
-    bits.pad();
+    put_rows(tree.has_codes, tree.rows, tree.code_bits, bytes);
     return bytes;
 }
 

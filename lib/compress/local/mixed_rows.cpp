@@ -1,4 +1,5 @@
 #include "compress/local/mixed_rows.h"
+#include "compress/local/triangles.h"
 #include "compress/parallel.h"
 
 #include <acdf/local.h>
@@ -38,12 +39,8 @@ struct MixedNormal {
 class MixedNormals {
 public:
     explicit MixedNormals(const NormalBins& bins) : bins_(bins), near_(bins.normals.size()) {
-        const auto n = static_cast<std::int32_t>(bins.subdivisions);
-        for (std::int32_t x = 0; x < n; ++x)
-            for (std::int32_t y = 0; x + y < n; ++y) {
-                add_triangles({x, y, n - 1 - x - y}, false);
-                if (x + y < n - 1) add_triangles({x, y, n - 2 - x - y}, true);
-            }
+        for_each_triangle(static_cast<std::int32_t>(bins.subdivisions),
+                          [&](const std::array<OctahedronCorner, 3>& corners) { add_triangle(corners); });
         for (std::uint32_t b = 0; b < near_.size(); ++b) add_corner(b);
     }
 
@@ -51,23 +48,11 @@ public:
     const std::vector<MixedNormal>& near(std::size_t bin) const { return near_[bin]; }
 
 private:
-    using Corner = std::array<std::int32_t, 3>;
-
-    static double length(const Corner& c) { return std::sqrt(double(c[0] * c[0] + c[1] * c[1] + c[2] * c[2])); }
-
-    /// Those that begin at a corner of the lattice, in all octants. One that points down has its corners two steps
-    /// from there, others one.
-    void add_triangles(const Corner& base, bool down) {
-        for (int octant = 0; octant < 8; ++octant) {
-            std::array<Corner, 3> corners;
-            for (std::size_t i = 0; i < 3; ++i)
-                for (std::size_t k = 0; k < 3; ++k)
-                    corners[i][k] = (base[k] + ((k == i) != down)) * (octant >> k & 1 ? -1 : 1);
-            add_triangle(corners);
-        }
+    static double length(const OctahedronCorner& c) {
+        return std::sqrt(double(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]));
     }
 
-    void add_triangle(const std::array<Corner, 3>& corners) {
+    void add_triangle(const std::array<OctahedronCorner, 3>& corners) {
         MixedNormal normal;
         normal.count = 3;
         normal.frequency = 1.0;

@@ -1,4 +1,6 @@
 #include "compress/local/partner.h"
+
+#include "compress/local/least_share.h"
 #include "compress/parallel.h"
 
 #include <acdf/sample.h>
@@ -220,14 +222,7 @@ float FilledTiles::recommended_light_share(std::size_t bin, std::vector<double> 
         for (const Term& term : terms) out += term.square / (share * term.ours + (1.0 - share) * term.partner);
         return out;
     };
-    constexpr double golden = 0.6180339887498949;
-    double low = 0.02, high = 0.98; // convex in between
-    for (int step = 0; step < 12; ++step) {
-        const double left = high - golden * (high - low), right = low + golden * (high - low);
-        if (moment(left) < moment(right)) high = right;
-        else low = left;
-    }
-    return static_cast<float>(0.5 * (low + high));
+    return least_share(moment, 12);
 }
 
 } // namespace acdf::compress

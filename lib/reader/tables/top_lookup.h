@@ -21,7 +21,8 @@ inline std::uint32_t top_position_scale(std::uint32_t resolution, std::uint32_t 
     return static_cast<std::uint32_t>((std::uint64_t{1} << (32 + bits)) / resolution);
 }
 
-/// Fills a grid of `bits`. split(at, axis, middle) tells where a split lies, child(at, upper) what follows it.
+/// Fills a grid of `bits`. split(at, axis, middle) sets the axis and middle of a split; child(at, upper) is its
+/// half.
 template <class Split, class Child>
 void fill_top_starts(std::uint32_t bits, const std::uint32_t scale[2], std::uint32_t* starts, const Split& split,
                      const Child& child) {

@@ -1,5 +1,6 @@
 #include "compress/local/halved/filled_rows.h"
 
+#include "compress/local/least_share.h"
 #include "compress/parallel.h"
 
 #include <algorithm>
@@ -195,14 +196,7 @@ AcdfPartnerRecord FilledRows::record(std::size_t bin, const std::vector<float>& 
                                                    static_cast<float>(ours) * row[t] / cosine[t] * scale_[t])};
         return out / (1.0 - share);
     };
-    constexpr double golden = 0.6180339887498949;
-    double low = 0.02, high = 0.98; // convex in between
-    for (int step = 0; step < 7; ++step) {
-        const double left = high - golden * (high - low), right = low + golden * (high - low);
-        if (moment(left) < moment(right)) high = right;
-        else low = left;
-    }
-    return {static_cast<float>(0.5 * (low + high)), irradiance};
+    return {least_share(moment, 7), irradiance};
 }
 
 } // namespace acdf::compress

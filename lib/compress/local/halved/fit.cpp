@@ -1,6 +1,5 @@
 #include "compress/local/halved/fit.h"
 
-#include "compress/halvings/bit_writer.h"
 #include "compress/halvings/code_bits.h"
 #include "compress/halvings/rows.h"
 #include "compress/local/halved/filled_rows.h"
@@ -61,12 +60,7 @@ Chunk normals_chunk(const LocalHalvings& fit) {
     Chunk chunk{ACDF_CHUNK_NORMALS, {}};
     chunk.bytes.resize(sizeof header);
     std::memcpy(chunk.bytes.data(), &header, sizeof header);
-    BitWriter bits(chunk.bytes);
-    for (const bool own : fit.has_codes) bits.put(own, 1);
-    bits.pad();
-    for (const std::vector<std::uint16_t>& row : fit.rows)
-        for (const std::uint16_t code : row) bits.put(code, fit.code_bits);
-    bits.pad();
+    put_rows(fit.has_codes, fit.rows, fit.code_bits, chunk.bytes);
     return chunk;
 }
 

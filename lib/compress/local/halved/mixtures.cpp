@@ -1,6 +1,7 @@
 #include "compress/local/halved/mixtures.h"
 
 #include "compress/local/light.h"
+#include "compress/local/triangles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,27 +10,6 @@ namespace acdf::compress {
 namespace {
 
 constexpr double kAloneShare = 0.2; // of what normals count, bins themselves
-
-using Corner = std::array<std::int32_t, 3>;
-
-/// Calls `visit` with the corners of each triangle of the lattice on an octahedron's faces.
-template <class Visit>
-void for_each_triangle(std::int32_t subdivisions, const Visit& visit) {
-    const auto in_all_octants = [&](const Corner& base, bool down) {
-        for (int octant = 0; octant < 8; ++octant) {
-            std::array<Corner, 3> corners;
-            for (std::size_t i = 0; i < 3; ++i)
-                for (std::size_t k = 0; k < 3; ++k)
-                    corners[i][k] = (base[k] + ((k == i) != down)) * (octant >> k & 1 ? -1 : 1);
-            visit(corners);
-        }
-    };
-    for (std::int32_t x = 0; x < subdivisions; ++x)
-        for (std::int32_t y = 0; x + y < subdivisions; ++y) {
-            in_all_octants({x, y, subdivisions - 1 - x - y}, false);
-            if (x + y < subdivisions - 1) in_all_octants({x, y, subdivisions - 2 - x - y}, true);
-        }
-}
 
 double length_of(const Direction& d) { return std::sqrt(dot(d, d)); }
 
@@ -43,7 +23,7 @@ Mixtures::Mixtures(const NormalBins& bins) : near(bins.normals.size()) {
         normals.add(unit);
         of.push_back(mixture);
     };
-    for_each_triangle(static_cast<std::int32_t>(bins.subdivisions), [&](const std::array<Corner, 3>& corners) {
+    for_each_triangle(static_cast<std::int32_t>(bins.subdivisions), [&](const auto& corners) {
         Mixture mixture;
         mixture.frequency = 1.0;
         Direction place{};
