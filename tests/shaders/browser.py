@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""browser.py FOLDER PAGE [FLAG...]: opens a page of a folder in headless Chromium, and waits for what it sends back.
+"""browser.py FOLDER PAGE... [--FLAG...]: opens pages of a folder in one headless Chromium, and waits for what they send back.
 
-The page fetches files of the folder from the server that it came from. It sends: POST /NAME with the bytes of a file,
-which is written to the folder; POST /done with a line that ends the run, "ok", "skipped: why" or what is wrong.
-Ends with 0, 77 or 1."""
+A page fetches files of the folder from the server that it came from. It sends: POST NAME with the bytes of a file,
+which is written beside it; POST done with a line that ends its run, "ok", "skipped: why" or what is wrong. Where all is well
+the answer to that is the page to open next, if there is one. Ends with 0, 77 or 1."""
 import contextlib
 import http.server
 import os
@@ -27,14 +27,16 @@ class Handler(http.server.SimpleHTTPRequestHandler):
 
     def do_POST(self):
         body = self.rfile.read(int(self.headers["Content-Length"]))
-        name = os.path.basename(self.path)
         self.send_response(200)
         self.end_headers()
-        if name == "done":
+        if os.path.basename(self.path) == "done":
             self.server.answer = body.decode()
-            self.server.answered.set()
+            if self.server.answer == "ok" and self.server.pages:
+                self.wfile.write(("/" + self.server.pages.pop(0)).encode())
+            else:
+                self.server.answered.set()
         else:
-            with open(os.path.join(self.directory, name), "wb") as file:
+            with open(self.translate_path(self.path), "wb") as file:
                 file.write(body)
 
     def log_message(self, *arguments):
@@ -49,10 +51,13 @@ def end_group(leader):
             time.sleep(0.05)
 
 
-def main(folder, page, *flags):
+def main(folder, page, *pages_and_flags):
+    flags = [word for word in pages_and_flags if word.startswith("--")]
     server = http.server.ThreadingHTTPServer(
         ("127.0.0.1", 0), lambda *arguments: Handler(*arguments, directory=folder))
-    server.answered, server.answer = threading.Event(), "no answer within %.0f s" % LONGEST
+    server.pages = [word for word in pages_and_flags if word not in flags]
+    longest = LONGEST * (1 + len(server.pages))
+    server.answered, server.answer = threading.Event(), "no answer within %.0f s" % longest
     threading.Thread(target=server.serve_forever, daemon=True).start()
     # Helpers of the browser may outlive it for a moment, and write to the profile while it is removed.
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
@@ -61,7 +66,7 @@ def main(folder, page, *flags):
                 ["chromium", *FLAGS, *flags, "--enable-logging=stderr", "--user-data-dir=" + profile,
                  "http://127.0.0.1:%d/%s" % (server.server_port, page)],
                 stdout=log, stderr=log, env={**os.environ, "HOME": profile, "TMPDIR": profile}, start_new_session=True)
-            server.answered.wait(LONGEST)
+            server.answered.wait(longest)
             browser.terminate()
             browser.wait()
             end_group(browser.pid)

@@ -1,20 +1,28 @@
 #!/usr/bin/env bash
-# run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT [FORM]: exports a file, samples and evaluates COUNT times on a device, and compares
-# with the reader. DEVICE: c, opencl, cuda, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only
+# run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT [FORM...]: exports files, samples and evaluates COUNT times of each on a device, and
+# compares with the reader. DEVICE: c, opencl, cuda, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only
 # compile. FORM: environment, on a lat-long grid; environment_square, on the octahedral one; local and local_square, the same
 # of the fast shape (local_fast, local_fast_square); brdf and brdf_anisotropic; maps. PROBE, BRDF, BUDGET and FLOOR in the environment
 # name another source than that of tests, the size of the file, and the share of a BRDF that follows the cosine. MADE names a
-# folder for files that several devices take: DEVICE "file" puts one there, others take it if there is one.
+# folder for files that several devices take: DEVICE "file" puts them there, others take those that there are.
 set -euo pipefail
-device=$1 acdf=$2 compare=$3 make_sky=$4 count=$5 form=${6:-environment}
-brdf= of= define=
-case $form in
-brdf*) brdf=brdf of=_brdf define=BRDF ;;
-maps) of=_sky define=MAPS ;;
-esac
+device=$1 acdf=$2 compare=$3 make_sky=$4 count=$5
+forms=("${@:6}")
+((${#forms[@]})) || forms=(environment)
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+all=$(mktemp -d)
+trap 'rm -rf "$all"' EXIT
+
+# use FORM: what is done next is done with that, in a folder of its own.
+use() {
+    form=$1 work=$all/$1 brdf='' of='' define=''
+    case $form in
+    brdf*) brdf=brdf of=_brdf define=BRDF ;;
+    maps) of=_sky define=MAPS ;;
+    esac
+    defines=${define:+-D$define}
+    mkdir -p "$work"
+}
 
 skip() {
     echo "skipped: $1 (tools/packages.txt names the package)"
@@ -23,16 +31,20 @@ skip() {
 need() { command -v "$1" >/dev/null || skip "no $1"; }
 
 make_file() {
+    if [ -e "${MADE-}/$form.acdf" ]; then
+        cp "$MADE/$form.acdf" "$work/sky.acdf"
+    else
+        make_new_file
+    fi
+    "$compare" inputs "$work/sky.acdf" "$count" "$work"
+}
+
+make_new_file() {
     local probe=${PROBE:-$work/sky.pfm} domain=latlong kind=env shape=()
     if [ "$brdf" ]; then
         local model=cook-torrance:m=0.2
         [ "$form" = brdf ] || model=ggx:alpha=0.1,0.3
-        if [ -e "${MADE-}/$form.acdf" ]; then
-            cp "$MADE/$form.acdf" "$work/sky.acdf"
-        else
-            "$acdf" brdf "${BRDF:-$model}" --budget "${BUDGET:-16KiB}" --diffuse-floor "${FLOOR:-0.1}" -o "$work/sky.acdf" --quiet
-        fi
-        "$compare" inputs "$work/sky.acdf" "$count" "$work"
+        "$acdf" brdf "${BRDF:-$model}" --budget "${BUDGET:-16KiB}" --diffuse-floor "${FLOOR:-0.1}" -o "$work/sky.acdf" --quiet
         return
     fi
     if [ "$form" = maps ]; then
@@ -46,7 +58,6 @@ make_file() {
             done
         done
         "$acdf" env "${maps[@]}" --axis time=7,8,9 --axis turbidity=2,4 --budget "${BUDGET:-16KiB}" -o "$work/sky.acdf" --quiet
-        "$compare" inputs "$work/sky.acdf" "$count" "$work"
         return
     fi
     [ -n "${PROBE-}" ] || "$make_sky" "$probe"
@@ -56,13 +67,10 @@ make_file() {
     local*) kind=local shape=(--shape small) ;;
     esac
     "$acdf" $kind "$probe" "${shape[@]}" --domain $domain --budget "${BUDGET:-16KiB}" -o "$work/sky.acdf" --quiet
-    "$compare" inputs "$work/sky.acdf" "$count" "$work"
 }
 
 # export TARGET -o FILE ...
 export_sky() { "$acdf" export "$work/sky.acdf" --force --target "$@"; }
-
-defines=${define:+-D$define}
 
 # Steps of 2^-24 by which the density of a sample may differ from that of its direction. Where floats are IEEE's, and sums of
 # products are not fused: none.
@@ -168,16 +176,24 @@ on_kernels() {
     echo "CUDA and HIP compile for devices, without doubles"
 }
 
-# on_browser PAGE TARGET STEPS [FLAG...]: a page in headless Chromium, whose GPU is software: it fetches what lies in $work and
-# sends the answers back.
+# on_browser PAGE TARGET STEPS [FLAG...]: a page in headless Chromium, whose GPU is software, for each form in turn: it fetches what
+# lies in $work and sends the answers back.
 on_browser() {
     need chromium
     need python3
-    make_file
-    export_sky "$2" --tables "$work/tables.bin" -o "$work/sky.$2"
-    cp "$here/$1.html" "$work/index.html"
-    python3 "$here/browser.py" "$work" "index.html${define:+?$define}" "${@:4}" || exit "$?"
-    check "$3"
+    local pages=()
+    for each in "${forms[@]}"; do
+        use "$each"
+        make_file
+        export_sky "$2" --tables "$work/tables.bin" -o "$work/sky.$2"
+        cp "$here/$1.html" "$work/index.html"
+        pages+=("$form/index.html${define:+?$define}")
+    done
+    python3 "$here/browser.py" "$all" "${pages[@]}" "${@:4}" || exit "$?"
+    for each in "${forms[@]}"; do
+        use "$each"
+        check "$3"
+    done
 }
 
 # The GLSL by the compiler of a real OpenGL driver.
@@ -187,22 +203,26 @@ on_mesa() {
     grep -q llvmpipe "$work/renderer" || skip "no Mesa with llvmpipe, but $(cat "$work/renderer")"
 }
 
-case $device in
-file)
-    rm -f "$MADE/$form.acdf"
-    make_file
+each_form() { # FUNCTION
+    for each in "${forms[@]}"; do
+        use "$each"
+        "$1"
+    done
+}
+
+new_file() {
+    make_new_file
     cp "$work/sky.acdf" "$MADE/$form.acdf"
-    ;;
-c) on_c ;;
-opencl) on_opencl ;;
-cuda) on_cuda ;;
-glslang) on_glslang ;;
-kernels) on_kernels ;;
+}
+
+case $device in
+file) each_form new_file ;;
+c | opencl | cuda | glslang | kernels) each_form "on_$device" ;;
 webgl) on_browser webgl glsl 4 ;;
 mesa) on_mesa ;;
 webgpu) on_browser webgpu wgsl 4 ;;
 *)
-    echo "usage: run.sh file|c|opencl|cuda|glslang|kernels|webgl|mesa|webgpu ACDF COMPARE MAKE_SKY COUNT [FORM]" >&2
+    echo "usage: run.sh file|c|opencl|cuda|glslang|kernels|webgl|mesa|webgpu ACDF COMPARE MAKE_SKY COUNT [FORM...]" >&2
     exit 2
     ;;
 esac

@@ -28,6 +28,4 @@ if ! "$acdf" view sky.acdf -o opened.html --quiet; then
     sed "s|<!-- OPENED -->|<script type=\"text/plain\" id=\"opened\" data-name=\"sky.acdf\">$(base64 -w 0 sky.acdf)</script>|" \
         viewer.html >opened.html
 fi
-for width in 1280 390; do
-    python3 "$here/../shaders/browser.py" . "viewer_test.html?width=$width" --window-size=1400,1300
-done
+python3 "$here/../shaders/browser.py" . "viewer_test.html?width=1280" "viewer_test.html?width=390" --window-size=1400,1300
