@@ -1,5 +1,5 @@
 # Installs the reader alone, moves it elsewhere, and builds the consumers against it: once through
-# find_package(acdf), once with nothing but pkg-config and the compiler. Their link lines may hold zlib and the
+# find_package(acdf), once with nothing but pkg-config and the compiler, which links what is in C++ as it was compiled. Their link lines may hold zlib and the
 # language's own runtime, no more.
 #
 # cmake -DBUILD=... -DWORK=... -DFILE=... -DCC=... -DCXX=... -DLIBDIR=... -P check_installed.cmake
@@ -24,17 +24,29 @@ if(programs)
     message(FATAL_ERROR "the component `reader` installs programs: ${programs}")
 endif()
 
-# The headers, each alone, as C and as C++.
-foreach(header layout sample blend local brdf table acdf reader views)
-    if(NOT header MATCHES "reader|views")
-        file(WRITE ${WORK}/alone.c "#include <acdf/${header}.h>\n")
-        run(ignored ${CC} -std=c99 -Wall -Wextra -Wconversion -Werror -I${WORK}/prefix/include
-            -fsyntax-only ${WORK}/alone.c)
+# All headers that were installed find what they include; that each may stand alone is seen where the library is built. In C:
+# those that are not of C++ alone.
+file(GLOB headers RELATIVE ${WORK}/prefix/include ${WORK}/prefix/include/acdf/*.h)
+list(FILTER headers EXCLUDE REGEX "words.h$") # which other headers include in the middle
+set(of_c)
+set(of_cpp)
+foreach(header IN LISTS headers)
+    string(APPEND of_cpp "#include <${header}>\n")
+    file(STRINGS ${WORK}/prefix/include/${header} once REGEX "^#pragma once" LIMIT_COUNT 1)
+    if(NOT once)
+        string(APPEND of_c "#include <${header}>\n")
     endif()
-    file(WRITE ${WORK}/alone.cpp "#include <acdf/${header}.h>\n")
-    run(ignored ${CXX} -std=c++17 -Wall -Wextra -Wconversion -Werror -I${WORK}/prefix/include
-        -fsyntax-only ${WORK}/alone.cpp)
 endforeach()
+foreach(header layout sample blend local brdf table acdf reader views)
+    if(NOT of_cpp MATCHES "<acdf/${header}\\.h>" OR NOT header MATCHES "reader|views" AND NOT of_c MATCHES "<acdf/${header}\\.h>")
+        message(FATAL_ERROR "acdf/${header}.h is not installed, or in another language: ${headers}")
+    endif()
+endforeach()
+set(strict -Wall -Wextra -Wconversion -Werror -I${WORK}/prefix/include -fsyntax-only)
+file(WRITE ${WORK}/all.c "${of_c}")
+file(WRITE ${WORK}/all.cpp "${of_cpp}")
+run(ignored ${CC} -std=c99 ${strict} ${WORK}/all.c)
+run(ignored ${CXX} -std=c++17 ${strict} ${WORK}/all.cpp)
 
 # find_package: the reader alone asks for zlib alone.
 run(ignored ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G Ninja -DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON
@@ -48,7 +60,8 @@ run(flags pkg-config --cflags --libs acdf)
 string(STRIP "${flags}" flags)
 separate_arguments(flags UNIX_COMMAND "${flags}")
 run(ignored ${CC} -std=c99 ${CMAKE_CURRENT_LIST_DIR}/consumer.c -o ${WORK}/pkgconfig_c ${flags})
-run(ignored ${CXX} -std=c++17 ${CMAKE_CURRENT_LIST_DIR}/consumer.cpp -o ${WORK}/pkgconfig_cpp ${flags})
+file(GLOB_RECURSE compiled ${WORK}/build/consumer.cpp.o) # its headers are where those of the C program were
+run(ignored ${CXX} ${compiled} -o ${WORK}/pkgconfig_cpp ${flags})
 
 set(runtime z m c gcc_s stdc++ ld-linux-x86-64 ld-linux-aarch64)
 foreach(program build/consumer_c build/consumer_cpp pkgconfig_c pkgconfig_cpp)
@@ -86,7 +99,8 @@ run(ignored ${CMAKE_COMMAND} --build ${WORK}/rooms)
 run(flags pkg-config --cflags --libs acdf-shader acdf-product)
 string(STRIP "${flags}" flags)
 separate_arguments(flags UNIX_COMMAND "${flags}")
-run(ignored ${CXX} -std=c++17 ${CMAKE_CURRENT_LIST_DIR}/../rooms/rooms.cpp -o ${WORK}/pkgconfig_rooms ${flags})
+file(GLOB_RECURSE compiled ${WORK}/rooms/rooms.cpp.o)
+run(ignored ${CXX} ${compiled} -o ${WORK}/pkgconfig_rooms ${flags})
 foreach(program rooms/rooms pkgconfig_rooms)
     expect_needed(${WORK}/${program} ${runtime})
     run(output ${WORK}/${program} ${LIGHT})
