@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""single.py WORK SINGLE CC DUMP environments|whole|size CXX FILE.acdf...: checks acdf.h and acdf.cpp in the folder SINGLE.
+"""single.py WORK SINGLE CC DUMP environments|whole samples|all CXX FILE.acdf...: checks acdf.h and acdf.cpp in the folder SINGLE.
 
-environments, whole: compiles them by CXX with -DACDF_ENVIRONMENT_ONLY or without, as C++17 without exceptions and RTTI and
+samples: compiles them by CXX with -DACDF_ENVIRONMENT_ONLY or without, as C++17 without exceptions and RTTI and
 with warnings as errors; what they print of the files must be what DUMP, the library's program, does. A C program includes the
 header and is linked by CC, without a runtime library of C++.
-size: prints, and bounds, lines of the sources that the preprocessor leaves, and bytes of programs that open a file and sample
-it once: `size` of a stripped program, less that of an empty one. zlib and the C library are not in it.
+all: that, and the same without zlib; and prints, and bounds, lines of the sources that the preprocessor leaves, and bytes of
+programs that open a file and sample it once: `size` of a stripped program, less that of an empty one. zlib and the C library
+are not in it.
 """
 import pathlib
 import re
@@ -14,7 +15,9 @@ import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
+CONSUMER = HERE.parents[2] / "packaging" / "consumer" / "consumer.c"
 STRICT = ["-std=c++17", "-fno-exceptions", "-fno-rtti", "-Wall", "-Wextra", "-Werror"]
+SMALL = ["-ffunction-sections", "-fdata-sections"]
 ENVIRONMENTS = "-DACDF_ENVIRONMENT_ONLY"
 # What the profile of environments and the whole, of five kinds and three shapes of local environments, take at most:
 # lines, bytes.
@@ -60,10 +63,9 @@ def lines_of(output):
     return {(line.split()[0], line.split()[1] == "hostile"): line for line in output.splitlines()}
 
 
-def check(work, single, cc, dump, profile, cxx, files):
-    flags = [ENVIRONMENTS] if profile == "environments" else []
-    run(cxx, *STRICT, "-O1", "-ffp-contract=off", *flags, "-c", single / "acdf.cpp", "-o", work / "acdf.o")
-    run(cxx, *STRICT[:3], "-O1", "-ffp-contract=off", *flags, "-DSINGLE", f"-I{single}", HERE / "dump.cpp", work / "acdf.o",
+def check(work, single, cc, dump, flags, cxx, files, level):
+    run(cxx, *STRICT, *SMALL, level, "-ffp-contract=off", *flags, "-c", single / "acdf.cpp", "-o", work / "acdf.o")
+    run(cxx, *STRICT[:3], level, "-ffp-contract=off", *flags, "-DSINGLE", f"-I{single}", HERE / "dump.cpp", work / "acdf.o",
         "-lz", "-o", work / "dump")
     options = ["--environments"] if flags else []
     ours, theirs = (lines_of(run(program, *options, *files)) for program in (work / "dump", dump))
@@ -85,15 +87,17 @@ def check(work, single, cc, dump, profile, cxx, files):
     (work / "acdf").mkdir(exist_ok=True)
     for name in ("acdf.h", "sample.h"): # which the consumer includes
         (work / "acdf" / name).write_text(f'#include "{single}/acdf.h"\n')
-    consumer = HERE.parents[2] / "packaging" / "consumer" / "consumer.c"
-    run(cc, "-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off", *flags, f"-I{work}", consumer, work / "acdf.o",
+    run(cc, "-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off", *flags, f"-I{work}", CONSUMER, work / "acdf.o",
         "-lz", "-lm", "-o", work / "consumer")
     of_profile = next(path for path in files if is_of_the_profile(path))
     if not run(work / "consumer", of_profile).startswith("total "):
         raise SystemExit("the C program samples nothing")
-    # Without zlib what is deflated is refused by its name, and the rest is read.
+
+
+def check_without_zlib(work, single, cc, flags, cxx, files):
+    """What is deflated is refused by its name, and the rest is read."""
     run(cxx, *STRICT, "-O0", *flags, "-DACDF_ZLIB=0", "-c", single / "acdf.cpp", "-o", work / "without.o")
-    run(cc, "-std=c99", "-O0", *flags, f"-I{work}", consumer, work / "without.o", "-lm", "-o", work / "without")
+    run(cc, "-std=c99", "-O0", *flags, f"-I{work}", CONSUMER, work / "without.o", "-lm", "-o", work / "without")
     for path in files:
         if not is_of_the_profile(path):
             continue
@@ -121,22 +125,22 @@ def text_bytes(program):
     return int(run("size", program).splitlines()[1].split()[0])
 
 
-def measure(work, single, cxx):
-    small = ["-std=c++17", "-O2", "-ffunction-sections", "-fdata-sections", "-fno-exceptions", "-fno-rtti"]
+def measure(work, single, profile, flags, cxx):
+    """Of the object that check() compiled."""
+    small = [*STRICT[:3], *SMALL, "-O2"]
     link = ["-Wl,--gc-sections", "-no-pie", "-s", "-lz"]
     (work / "empty.cpp").write_text("int main() {}\n")
     run(cxx, *small, work / "empty.cpp", *link, "-o", work / "empty")
     (work / "program.cpp").write_text(OPEN_AND_SAMPLE)
     too_many = []
-    for what, flags in (("environments", [ENVIRONMENTS]), ("whole", [])):
-        lines = count_lines(single, cxx, flags)
-        print(f"{what}: {lines} lines")
-        if lines > MOST_LINES[what]:
-            too_many.append(what)
-        run(cxx, *small, *flags, "-c", single / "acdf.cpp", "-o", work / f"{what}.o")
-    for what, of, flags in (("environments", "environments", [ENVIRONMENTS]), ("environments of the whole", "whole", []),
-                            ("all kinds", "whole", ["-DALL_KINDS"])):
-        run(cxx, *small, *flags, f"-I{single}", work / "program.cpp", work / f"{of}.o", *link, "-o", work / "program")
+    lines = count_lines(single, cxx, flags)
+    print(f"{profile}: {lines} lines")
+    if lines > MOST_LINES[profile]:
+        too_many.append(profile)
+    programs = {"environments": {"environments": flags},
+                "whole": {"environments of the whole": [], "all kinds": ["-DALL_KINDS"]}}
+    for what, defines in programs[profile].items():
+        run(cxx, *small, *defines, f"-I{single}", work / "program.cpp", work / "acdf.o", *link, "-o", work / "program")
         size = text_bytes(work / "program") - text_bytes(work / "empty")
         print(f"{what}: {size} bytes of text")
         if size > MOST_BYTES[what]:
@@ -145,14 +149,15 @@ def measure(work, single, cxx):
         raise SystemExit(f"more than was reached before: {too_many}")
 
 
-def main(work, single, cc, dump, what, cxx, *files):
+def main(work, single, cc, dump, profile, what, cxx, *files):
     single = pathlib.Path(single).resolve()
-    work = pathlib.Path(work) / f"{what}_{pathlib.Path(cxx).name}"
+    work = pathlib.Path(work) / f"{profile}_{pathlib.Path(cxx).name}"
     work.mkdir(parents=True, exist_ok=True)
-    if what == "size":
-        measure(work, single, cxx)
-    else:
-        check(work, single, cc, dump, what, cxx, files)
+    flags = [ENVIRONMENTS] if profile == "environments" else []
+    check(work, single, cc, dump, flags, cxx, files, "-O2" if what == "all" else "-O0")
+    if what == "all":
+        check_without_zlib(work, single, cc, flags, cxx, files)
+        measure(work, single, profile, flags, cxx)
 
 
 if __name__ == "__main__":
