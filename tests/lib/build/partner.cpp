@@ -35,6 +35,9 @@ TEST(Partner, PdfsIntegrateToOneAndAreThoseOfSamples) {
     std::mt19937_64 random(5);
     const std::vector<Probe> all = probes();
     for (const Kind& kind : kinds) {
+        // The same code, with other weights and shares.
+        if (acdf_test::kSanitized && (kind.mis.heuristic == ACDF_HEURISTIC_POWER || kind.mis.light != 1.0))
+            continue;
         Made made;
         make(all[1], kind, made);
         EXPECT_NE(made.file.partner(), nullptr);

@@ -1,5 +1,6 @@
 // Sampling and evaluation: against the slow decoder, against itself, and at the edges.
 #include "tests/lib/reader/sampling.h"
+#include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/reference.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +56,7 @@ TEST(EnvironmentView, agreesWithTheSlowDecoder) {
         const Environment reference(env->bytes);
         const double rounded_in_floats = spec.octahedral ? 4e-7 : 2e-7; // by tables
         std::mt19937_64 rng(seed);
-        for (int n = 0; n < 300; ++n) {
+        for (int n = 0; n < acdf_test::repeated(300); ++n) {
             const double u0 = uniform(rng), u1 = uniform(rng);
             const auto a = env->view.sample(u0, u1);
             const auto b = reference.sample(u0, u1);
@@ -63,7 +64,7 @@ TEST(EnvironmentView, agreesWithTheSlowDecoder) {
                 ASSERT_NEAR(a.direction[i], b.direction[i], rounded_in_floats) << seed << ' ' << n;
             ASSERT_NEAR(a.pdf / b.pdf, 1.0, 1e-6) << seed << ' ' << n;
         }
-        for (int n = 0; n < 300; ++n) { // directions anywhere, dark ones too
+        for (int n = 0; n < acdf_test::repeated(300); ++n) { // directions anywhere, dark ones too
             const double z = 2 * uniform(rng) - 1, phi = 2 * M_PI * uniform(rng), sine = std::sqrt(1 - z * z);
             const float f[3] = {rounded(sine * std::cos(phi)), rounded(sine * std::sin(phi)), rounded(z)};
             const double d[3] = {f[0], f[1], f[2]};

@@ -1,4 +1,5 @@
 // `acdf render` as a user runs it.
+#include "tests/inputs/sanitized.h"
 #include "tests/tools/render/scenes.h"
 
 #include <nlohmann/json.hpp>
@@ -216,6 +217,7 @@ TEST_F(RenderCommand, SaysWhatIsWrong) {
 
 // As most renderers have it; samplers and the exact sum see the same light.
 TEST_F(RenderCommand, LightIsInterpolatedUnlessTheSceneSaysOtherwise) {
+    ACDF_NOT_SANITIZED();
     const auto brightness = [&](const std::string& filter, const std::string& output) {
         std::string scene = small_scene("\"cosine\", \"full-cdf\", \"env:4KiB\", \"local:32KiB\"");
         const std::string was = ", \"filter\": \"nearest\"";

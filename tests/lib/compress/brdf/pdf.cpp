@@ -140,6 +140,7 @@ TEST_P(BrdfPdf, coversTheLightAndIntegratesTo1) {
 // Nearly opposite to this view lies a direction whose half-vector floats have at right angles to both: its pdf
 // has no bound.
 TEST(BrdfPdfs, areMeasuredNextToTheOppositeOfTheView) {
+    ACDF_NOT_SANITIZED();
     const MadeBrdf& brdf = made(anisotropic);
     const View view = acdf::build::random_views(500, false).at(335);
     const auto measured = acdf::build::measure_views(brdf.file, brdf.reflected, {view}, Sides::any);
@@ -189,6 +190,7 @@ TEST(BrdfFit, isNearlyFreeOfNoise) {
 
 // Directions that no symmetry of the frame maps onto each other.
 TEST(BrdfFit, isWhereTheLightIs) {
+    ACDF_NOT_SANITIZED();
     const Direction wo = at_angles(0.8, 0.3), mirror = {-wo[0], -wo[1], wo[2]};
     const Direction back = wo, aside = {-wo[1], wo[0], wo[2]};
     const float there = made(isotropic).view().pdf(wo.data(), mirror.data());
