@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 namespace acdf::test {
 namespace {
 
@@ -24,8 +26,14 @@ protected:
         write_rgb(probe, 32, 16, rgb);
     }
 
-    /// What `info` says of the file that the words make, which begin with a command.
+    /// What `info` says of the file that the words make, which begin with a command; a small one if they say no
+    /// size.
     json made(std::vector<std::string> words) {
+        const auto has = [&](const char* word) {
+            return std::find(words.begin(), words.end(), word) != words.end();
+        };
+        if (!has("--budget") && !has("--target-variance") && !has("--max-weight") && !has("--fit"))
+            words.insert(words.end(), {"--budget", "32KiB"});
         words.insert(words.begin() + 1, {probe, "-o", output, "--force"});
         const Result result = run_acdf(words);
         messages = result.err;

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace acdf {
@@ -77,29 +78,30 @@ void expect_lamps_are_sampled(const std::vector<Lamp>& lamps, bool square, std::
         return lit ? brightness : 1e-3;
     });
     const compress::Target grid = square ? acdf_test::octahedral(latlong) : latlong;
-    for (const AcdfPartnerKind kind : {ACDF_PARTNER_COSINE, ACDF_PARTNER_BRDF})
-        for (const AcdfHeuristic heuristic : {ACDF_HEURISTIC_BALANCE, ACDF_HEURISTIC_POWER}) {
-            build::Normal at{};
-            const double variance = worst(grid, kind, heuristic, 48 << 10, at);
-            EXPECT_LT(variance, kMost) << (square ? "octahedral" : "lat-long") << ", " << lamps.front().column
-                                       << ", " << lamps.front().row << ", " << kind << ", " << heuristic << ": "
-                                       << at[0] << ", " << at[1] << ", " << at[2];
-            if (acdf_test::kSanitized) return;
-        }
+    const std::pair<AcdfPartnerKind, AcdfHeuristic> partners[] = {{ACDF_PARTNER_COSINE, ACDF_HEURISTIC_BALANCE},
+                                                                  {ACDF_PARTNER_BRDF, ACDF_HEURISTIC_POWER}};
+    for (const auto& [kind, heuristic] : partners) {
+        build::Normal at{};
+        const double variance = worst(grid, kind, heuristic, 48 << 10, at);
+        EXPECT_LT(variance, kMost) << (square ? "octahedral" : "lat-long") << ", " << lamps.front().column << ", "
+                                   << lamps.front().row << ", " << kind << ", " << heuristic << ": " << at[0]
+                                   << ", " << at[1] << ", " << at[2];
+        if (acdf_test::kSanitized) return;
+    }
 }
 
 TEST(PartnerAtTheHorizon, TexelsAcrossTheEquatorOfTheSquare) {
     expect_lamps_are_sampled({{31, 16}}, true, 32, 32, 1e6);
     if (acdf_test::kSanitized) return;
     expect_lamps_are_sampled({{20, 27}}, true, 32, 32, 1e6);
-    expect_lamps_are_sampled({{64, 127}}, true, 128, 128, 1e6);
+    expect_lamps_are_sampled({{32, 63}}, true, 64, 64, 1e6);
 }
 
 TEST(PartnerAtTheHorizon, TexelsNextToTheEquator) {
     expect_lamps_are_sampled({{20, 15}}, false, 64, 32, 1e6);
     if (acdf_test::kSanitized) return;
     expect_lamps_are_sampled({{20, 16}}, false, 64, 32, 1e6);
-    expect_lamps_are_sampled({{80, 64}}, false, 256, 128, 1e6);
+    expect_lamps_are_sampled({{40, 32}}, false, 128, 64, 1e6);
     expect_lamps_are_sampled({{7, 8}}, false, 31, 17, 1e6); // across it
 }
 

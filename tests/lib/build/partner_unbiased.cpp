@@ -38,14 +38,13 @@ Probe real_probe(const std::string& name) {
     return out;
 }
 
-/// Real ones. Where they are missing the first two synthetic ones take their place; the others have lights of a few
-/// texels, and where a horizon cuts these, sums over texels are off by more than kSummation.
+/// Real ones: windows and lamps, a sun, soft boxes. Where they are missing the first two synthetic ones take their
+/// place; the others have lights of a few texels, and where a horizon cuts these, sums over texels are off by more
+/// than kSummation.
 std::vector<Probe> compared_probes() {
     const std::vector<Probe> synthetic = probes();
-    const char* names[] = {"grace_probe.hdr", "city.exr",      "noon_grass_1k.hdr", "venice_sunset_1k.hdr",
-                           "beach_probe.hdr", "courtyard.exr", "studio.exr",        "sunset.exr"};
     std::vector<Probe> out;
-    for (const char* name : names) {
+    for (const char* name : {"grace_probe.hdr", "noon_grass_1k.hdr", "studio.exr"}) {
         if (Probe real = real_probe(name); !real.radiance.empty()) out.push_back(std::move(real));
         else if (out.size() < 2) out.push_back(synthetic[out.size()]);
     }
@@ -127,10 +126,10 @@ TEST(PartnerUnbiased, AtEachOf200NormalsForEveryProbeFitAndPartner) {
             EXPECT_LT(own.squares_, own.count_ + 4.0 * std::sqrt(2.0 * own.count_) + 16.0) << what;
         }
     }
-    // 4 standard errors: of so many normal numbers 0.8 are beyond, more than 5 in one of 2000 runs; 5.5 in one of
-    // 2000.
+    // 4 standard errors: of so many normal numbers 0.3 are beyond, more than 3 in one of 4000 runs; 5.5 in one of
+    // 5000.
     EXPECT_GT(all.count_, 1500.0 * static_cast<double>(compared.size()));
-    EXPECT_LE(all.beyond_, 5);
+    EXPECT_LE(all.beyond_, 3);
     EXPECT_LT(all.largest_, 5.5);
     std::printf("%g comparisons: %d beyond 4 standard errors, largest %.2f, mean square %.3f\n", all.count_,
                 all.beyond_, all.largest_, all.squares_ / all.count_);

