@@ -149,6 +149,7 @@ TEST(SweepCommand, AMeshIsWhereFilesAreCompared) {
 
 // Files of every kind, each made again by its options.
 TEST(SweepCommand, OptionsMakeTheFilesAgain) {
+    ACDF_NOT_SANITIZED();
     const Folder folder;
     const std::string probe = tiny_probe(folder);
     const Result made = run_acdf({"sweep", probe, "-o", folder / "out", "--budgets", "32KiB", "--no-timing",
