@@ -66,12 +66,14 @@ ACDF_LANE void begin_draws(const Vector u[2], std::size_t at, FastDraws* d) {
 template <class At>
 ACDF_LANE std::uint64_t draw_lights(const AcdfLocal& local, const At& at, FastDraws* d) {
     std::uint64_t lost = 0;
+    if (!d->lit) return 0;
+    const auto lights = lights_of(local, at);
     for (std::uint64_t left = d->lit; left;) {
         alignas(64) long long lane[ACDF_WIDTH], number[ACDF_WIDTH];
         alignas(64) double weight[ACDF_WIDTH], before[ACDF_WIDTH];
         left = next_lanes(left, lane);
         LightDraws draws(gathered_doubles(d->x, loaded(lane)));
-        offer_lights(local, at, *d, lane, &draws);
+        offer_lights(local, lights, *d, lane, &draws);
         stored(number, draws.number);
         stored(weight, draws.weight);
         stored(before, draws.before);

@@ -25,9 +25,42 @@ struct LightDraws {
     }
 };
 
-/* The bright tiles of normals of their own: acdf_local_tabled_bright_tiles of all that some triangle may see. */
+/* What bright tiles of one point weigh, and the sums of that: as many as it may see, by twos. */
+struct LightsOfPoint {
+    std::uint32_t count = 0, number[ACDF_MAX_BRIGHT_TILES];
+    double weight[ACDF_MAX_BRIGHT_TILES], end[ACDF_MAX_BRIGHT_TILES];
+
+    ACDF_LANE_MEMBER LightsOfPoint(const AcdfLocal& local, const AcdfLocalPoint& point) {
+        const AcdfBrightTilePair* const pair = acdf_local_bright_tiles(local.tables);
+        const AcdfScaledNormal normal = acdf_local_scaled_normal(&point);
+        const double inverse = 1.0 / normal.length;
+        double before = 0.0;
+        for (std::uint32_t seen = acdf_local_seen(&local, point.by.fast.facet); seen;
+             seen &= seen - 1, count += 2) {
+            const std::uint32_t k = acdf_lowest_bit(seen);
+            for (std::uint32_t i = 0; i < 2; ++i) {
+                number[count + i] = 2 * k + i;
+                weight[count + i] = acdf_pair_weight(&normal, &pair[k], i, inverse);
+            }
+            end[count] = weight[count] + before;
+            before = end[count + 1] = (weight[count + 1] + weight[count]) + before;
+        }
+    }
+};
+/* Normals of their own have theirs weighed when they are offered. */
+struct LightsOfPoints {};
+
 template <class P>
-ACDF_LANE void offer_lights(const AcdfLocal& local, const PointsOf<P>&, const FastPointLanes& lanes,
+ACDF_LANE LightsOfPoint lights_of(const AcdfLocal& local, const OnePoint<P>& at) {
+    return LightsOfPoint(local, at.point);
+}
+template <class P>
+ACDF_LANE LightsOfPoints lights_of(const AcdfLocal&, const PointsOf<P>&) {
+    return {};
+}
+
+/* Offers the bright tiles of normals of their own: all that some triangle may see. */
+ACDF_LANE void offer_lights(const AcdfLocal& local, const LightsOfPoints&, const FastPointLanes& lanes,
                             const long long lane[ACDF_WIDTH], LightDraws* draws) {
     const AcdfBrightTilePair* const pair = acdf_local_bright_tiles(local.tables);
     const Corners at = corners_at(lanes.bright_tiles, loaded(lane));
@@ -46,13 +79,11 @@ ACDF_LANE void offer_lights(const AcdfLocal& local, const PointsOf<P>&, const Fa
 }
 
 /* Those of one point. */
-template <class P>
-ACDF_LANE void offer_lights(const AcdfLocal&, const OnePoint<P>& at, const FastPointLanes&, const long long*,
+ACDF_LANE void offer_lights(const AcdfLocal&, const LightsOfPoint& lights, const FastPointLanes&, const long long*,
                             LightDraws* draws) {
-    const AcdfLocalPoint& point = at.point;
-    for (std::uint32_t i = 0; i < point.lit; ++i)
-        draws->offer(acdf_local_lit(&point, i), all(point.light[i]), all(i > 0 ? point.light_end[i - 1] : 0.0),
-                     all(point.light_end[i]));
+    for (std::uint32_t i = 0; i < lights.count; ++i)
+        draws->offer(lights.number[i], all(lights.weight[i]), all(i > 0 ? lights.end[i - 1] : 0.0),
+                     all(lights.end[i]));
 }
 
 } // namespace

@@ -135,10 +135,10 @@ ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
 /* The same of a lane whose tile is a bright tile: no row gives it a probability. */
 ACDF_LANE void weigh_light(const AcdfLocal& local, std::size_t i, FastFinds* f) {
     const std::uint32_t k = f->cells.tile[i]->light - 1u;
-    AcdfLocalPoint point;
-    for (int axis = 0; axis < 3; ++axis) point.normal[axis] = f->bright_tiles.normal[axis][i];
-    point.length = f->bright_tiles.length[i];
-    f->cells.of[i] = acdf_tabled_weight(&local, &point, k);
+    AcdfScaledNormal at;
+    for (int axis = 0; axis < 3; ++axis) at.normal[axis] = f->bright_tiles.normal[axis][i];
+    at.length = f->bright_tiles.length[i];
+    f->cells.of[i] = acdf_fast_bright_tile_weight(&local, &at, k);
     f->cells.all[i] = f->bright_tiles.sum[i] * ACDF_FAST_STEPS;
 }
 

@@ -243,23 +243,24 @@ ACDF_LANE void set_points(const AcdfLocal& local, FastPoints<Draws>* out) {
 /* One point in all lanes, which serves_batches has approved. */
 template <bool Draws>
 ACDF_LANE void points_of(const AcdfLocal&, const AcdfLocalPoint& point, FastPoints<Draws>* out) {
-    const AcdfFastMixture& mix = point.fast;
+    const AcdfFastMixture& mix = point.by.fast.mix;
     for (int i = 0; i < kRows; ++i) {
         out->group[i] = Integer{} + (long long)(std::uintptr_t)mix.group[i];
         out->tile[i] = Integer{} + (long long)(std::uintptr_t)mix.tile[i];
         if (Draws) out->upper[i] = Integer{} + (long long)(std::uintptr_t)mix.upper[i];
         out->share[i] = Ints{} + mix.weight[i];
     }
-    for (int i = 0; i < 3; ++i) out->normal[i] = all(point.normal[i]);
-    out->length = all(point.length);
+    const AcdfScaledNormal normal = acdf_local_scaled_normal(&point);
+    for (int i = 0; i < 3; ++i) out->normal[i] = all(normal.normal[i]);
+    out->length = all(normal.length);
     out->facet = Integer{}; // any: the point has its bright tiles
     out->whole = all(mix.whole);
     out->bright_tiles = all(point.bright_tiles);
     out->others = Integer{};
     out->mixture = all(0.0); // of others alone
     out->sum = all(point.sum);
-    out->step = all(point.step);
-    out->unit = all(point.unit);
+    out->step = all(point.by.fast.step);
+    out->unit = all(point.by.fast.unit);
     out->served = ~Integer{};
 }
 

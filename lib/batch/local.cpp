@@ -37,7 +37,7 @@ void walk(const AcdfLocal& local, Lane* lane, std::size_t count) {
         any = false;
         for (Lane* l = lane; l < lane + count; ++l) {
             if (l->walk.node & ACDF_TILE_FLAG) continue;
-            acdf_tile_walk_step(words, &local.tables->tiles, l->point.codes, kRows, &l->walk);
+            acdf_tile_walk_step(words, &local.tables->tiles, l->point.by.tabled.codes, kRows, &l->walk);
             any = true;
         }
     }
@@ -68,7 +68,7 @@ bool serves_batches(const AcdfLocal& local) {
 }
 bool serves_batches(const AcdfLocalPoint& point) {
     return (point.what == ACDF_LOCAL_BLEND || point.what == ACDF_LOCAL_FAST) && point.mix.count == kRows &&
-           point.visibility.count == 0 && point.visible_portals.count == 0;
+           point.cells == 0;
 }
 
 #if ACDF_BATCH_X86
@@ -125,7 +125,7 @@ void LocalBatch::sample(const float (*normals)[3], const double (*u)[2], std::si
             double from[2];
             acdf_local_of_mixture(&l.point, v, from);
             acdf_tile_walk_begin(acdf_local_words(local_.tables), &local_.tables->tiles, &l.point.mix,
-                                 l.point.codes, kRows, local_.tables->tiles.root, from, &l.walk);
+                                 l.point.by.tabled.codes, kRows, local_.tables->tiles.root, from, &l.walk);
             l.number = i;
             ++used;
         }

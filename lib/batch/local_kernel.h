@@ -274,7 +274,7 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const Rows& rows, const At& at
 }
 
 ACDF_LANE OwnRows rows_of(const float (*)[3]) { return {}; }
-ACDF_LANE SameRows rows_of(const AcdfLocalPoint& point) { return {point.codes}; }
+ACDF_LANE SameRows rows_of(const AcdfLocalPoint& point) { return {point.by.tabled.codes}; }
 
 /* `of`: normals, one each, or the point of all. */
 template <class Of>

@@ -129,11 +129,10 @@ __attribute__((noinline)) double light_probability(const AcdfLocal& local, const
                                                    std::uint32_t tile) {
     const std::uint32_t light = acdf_local_bright_tile_of(&local, tile);
     if (light == 0) return 0.0;
-    AcdfLocalPoint point;
-    for (int k = 0; k < 3; ++k) point.normal[k] = seen.normal[k][i];
-    point.length = seen.length[i];
-    point.visibility.count = 0;
-    const double probability = acdf_local_bright_tile_weight(&local, &point, light - 1) / seen.sum[i];
+    AcdfScaledNormal at;
+    for (int k = 0; k < 3; ++k) at.normal[k] = seen.normal[k][i];
+    at.length = seen.length[i];
+    const double probability = acdf_bright_tile_weight(&local.bright_tiles[light - 1], &at) / seen.sum[i];
     return probability > 0.0 ? acdf_positive(probability) : 0.0;
 }
 

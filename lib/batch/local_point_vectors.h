@@ -50,7 +50,7 @@ ACDF_LANE const AcdfFacet& facet_at(const AcdfLocal& local, long long byte) {
 
 /// What facets of lanes store of their bright tiles.
 struct Facets {
-    Vector whole;      // acdf_facet_whole
+    Vector whole;      // what AcdfFacet::whole gives to the normal
     Integer others;    // in the lower halves, AcdfFacet::others
     std::uint32_t any; // what any lane has of these
 };
@@ -209,13 +209,14 @@ template <bool Draws>
 ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, Points<Draws>* out) {
     const AcdfTileTables& tiles = local.tables->tiles;
     const std::uint8_t* const rows = acdf_tile_row(acdf_local_words(local.tables), &tiles, 0);
+    const AcdfScaledNormal normal = acdf_local_scaled_normal(&point);
     for (int i = 0; i < kRows; ++i) {
-        out->codes[i] = Integer{} + (long long)(std::uintptr_t)point.codes[i];
-        out->row[i] = Integer{} + (long long)((std::size_t)(point.codes[i] - rows) / tiles.stride);
+        out->codes[i] = Integer{} + (long long)(std::uintptr_t)point.by.tabled.codes[i];
+        out->row[i] = Integer{} + (long long)((std::size_t)(point.by.tabled.codes[i] - rows) / tiles.stride);
         out->weight[i] = all(point.mix.weight[i]);
-        out->normal[i] = all(point.normal[i]);
+        out->normal[i] = all(normal.normal[i]);
     }
-    out->length = all(point.length);
+    out->length = all(normal.length);
     if constexpr (Draws) weigh_each(local, out);
     out->bright_tiles = all(point.bright_tiles);
     out->others = Integer{};

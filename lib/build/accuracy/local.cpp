@@ -61,7 +61,7 @@ public:
                                static_cast<float>(normal[2] / length)};
         if (source.what >= ACDF_LOCAL_BLEND) return sum(unit, shared_, tile_probabilities(source));
         if (source.what == ACDF_LOCAL_NOTHING) return sum(unit, shared_, {});
-        if (own.density.empty() || own.root != source.root) paint_tree(source.root, own);
+        if (own.density.empty() || own.root != source.by.root) paint_tree(source.by.root, own);
         return sum(unit, own, {1.0});
     }
 
@@ -124,8 +124,8 @@ private:
 
     void spread_sums(const AcdfLocalPoint& source, std::vector<double>& out) const {
         for (std::uint32_t t = 0; t < out.size(); ++t) {
-            const AcdfFastShare share = acdf_fast_share(&source.fast, t);
-            out[t] = source.unit * share.of / share.all;
+            const AcdfFastShare share = acdf_fast_share(&source.by.fast.mix, t);
+            out[t] = source.by.fast.unit * share.of / share.all;
         }
     }
 
@@ -146,12 +146,13 @@ private:
 
     std::vector<double> tile_probabilities(const AcdfLocalPoint& source) const {
         std::vector<double> out(boxes_.size());
-        if (source.what == ACDF_LOCAL_ROWS) spread_rows(source.rows, out);
+        if (source.what == ACDF_LOCAL_ROWS) spread_rows(source.by.rows, out);
         else if (source.what == ACDF_LOCAL_FAST) spread_sums(source, out);
         else spread(boxes_.size() > 1 ? 0 : ACDF_TILE_FLAG, source.mix, source.sum, out);
+        const AcdfScaledNormal normal = acdf_local_scaled_normal(&source);
         for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
             out[local_.bright_tiles[k].tile] =
-                acdf_bright_tile_weight(&local_.bright_tiles[k], &source) / source.sum;
+                acdf_bright_tile_weight(&local_.bright_tiles[k], &normal) / source.sum;
         return out;
     }
 

@@ -94,11 +94,11 @@ float as_part(double value) {
 
 /// What bright tiles sample at a position on a face.
 double light_weights(const std::vector<AcdfBrightTile>& bright_tiles, const Direction& place, double length) {
-    AcdfLocalPoint point = {};
-    std::copy(place.begin(), place.end(), point.normal);
-    point.length = length;
+    AcdfScaledNormal at = {};
+    std::copy(place.begin(), place.end(), at.normal);
+    at.length = length;
     double sum = 0.0;
-    for (const AcdfBrightTile& light : bright_tiles) sum += acdf_bright_tile_weight(&light, &point);
+    for (const AcdfBrightTile& light : bright_tiles) sum += acdf_bright_tile_weight(&light, &at);
     return sum;
 }
 

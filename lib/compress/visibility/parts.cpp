@@ -228,8 +228,9 @@ void VisibilityParts::weigh(const AcdfLocalPoint& point, float* out) const {
             else mixes[child] = sides[k];
         }
     }
+    const AcdfScaledNormal normal = acdf_local_scaled_normal(&point);
     for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
-        out[box_count_ + k] = static_cast<float>(acdf_bright_tile_weight(&local_.bright_tiles[k], &point));
+        out[box_count_ + k] = static_cast<float>(acdf_bright_tile_weight(&local_.bright_tiles[k], &normal));
 }
 
 std::vector<std::array<double, 2>> VisibilityParts::sides(const double* amount) const {

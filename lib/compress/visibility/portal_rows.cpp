@@ -9,7 +9,6 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::uint32_t kMostPieces = ACDF_MAX_PORTAL_PIECES * ACDF_MAX_PORTAL_PIECES;
 /// Rays of a point to all that the row samples, to find what comes in by other ways.
 constexpr std::uint32_t kRays = 16;
 /// How much an estimate from few points is trusted, and the least and the most of the samples that rows take: light
@@ -72,10 +71,11 @@ private:
     void trace_portal(std::size_t i, const VisibilityPoint& point, std::uint32_t portal,
                       AcdfVisiblePortal& visible_portal, PortalLight& out) const {
         const std::uint32_t pieces = table_.header->pieces;
-        double all[kMostPieces];
-        std::fill_n(all, kMostPieces, 1.0);
-        const double normal[3] = {double{point.normal[0]}, double{point.normal[1]}, double{point.normal[2]}};
-        acdf_visible_portal_weigh(&table_, normal, all, &visible_portal);
+        AcdfPortalEye eye = {};
+        eye.table = &table_;
+        std::copy_n(point.normal.begin(), 3, eye.x + 3);
+        const AcdfPortalPieces all = acdf_all_pieces(&table_);
+        acdf_portal_weigh(&eye, portal, &all, &visible_portal);
         for (std::uint32_t x = 0; x < pieces; ++x)
             for (std::uint32_t y = 0; y < pieces; ++y) {
                 const float weight = visible_portal.piece[x][y];
@@ -102,7 +102,9 @@ private:
             const double d[3] = {double{s.direction[0]}, double{s.direction[1]}, double{s.direction[2]}};
             const bool through =
                 std::any_of(visible_portals, visible_portals + count, [&](const AcdfVisiblePortal& visible_portal) {
-                    return acdf_visible_portal_pdf(&table_, &visible_portal, d) > 0.0;
+                    AcdfPortalSpot spot;
+                    return acdf_visible_portal_find(&table_, &visible_portal, d, &spot) &&
+                           acdf_portal_spot_pdf(&table_, &visible_portal, &spot) > 0.0;
                 });
             arrives += !through && !is_met(point, s.direction);
         }

@@ -104,11 +104,11 @@ private:
     bool find_any(const std::uint32_t* square, AcdfRange* range, AcdfStratum* strata) const {
         if (point_.what == ACDF_LOCAL_BLEND) return find(square, range, strata);
         if (point_.what == ACDF_LOCAL_ROWS)
-            return acdf_rows_strata(local_.rows_of_normals, local_.environment.halved, &point_.rows, square, range,
-                                    strata) > 0.0;
+            return acdf_rows_strata(local_.rows_of_normals, local_.environment.halved, &point_.by.rows, square,
+                                    range, strata) > 0.0;
         if (local_.environment.halved)
             return acdf_environment_halved_find(&local_.environment, square, range, strata) > 0.0;
-        return acdf_tree_find(local_.environment.tree, point_.root, square, range, strata) > 0.0;
+        return acdf_tree_find(local_.environment.tree, point_.by.root, square, range, strata) > 0.0;
     }
 
     /// Bright tiles come before the mixture in u[0] (acdf_local_sample_bright_tile).
@@ -120,11 +120,12 @@ private:
             const double share = point_.bright_tiles / point_.sum;
             strata[0] = {share + (1.0 - share) * strata[0].low, (1.0 - share) * strata[0].width};
         } else {
+            const AcdfScaledNormal normal = acdf_local_scaled_normal(&point_);
             double below = 0.0, weight = 0.0;
             std::uint32_t k = 0;
             for (; k < local_.bright_tile_count && local_.bright_tiles[k].tile != tile; ++k)
-                below += std::max(0.0, acdf_bright_tile_weight(&local_.bright_tiles[k], &point_));
-            if (k < local_.bright_tile_count) weight = acdf_bright_tile_weight(&local_.bright_tiles[k], &point_);
+                below += std::max(0.0, acdf_bright_tile_weight(&local_.bright_tiles[k], &normal));
+            if (k < local_.bright_tile_count) weight = acdf_bright_tile_weight(&local_.bright_tiles[k], &normal);
             if (!(weight > 0.0)) return false;
             strata[0] = {below / point_.sum, weight / point_.sum};
             strata[1] = {0.0, 1.0};

@@ -101,7 +101,7 @@ ACDF_LANE unsigned enter_parts(const AcdfLocal& local, const AcdfLocalPoint& poi
     store_packed(&walks->lane[to], numbers_from(at), mixed);
     walks->count += (std::size_t)__builtin_popcount(mixed);
     for (std::size_t i = to; i < walks->count; ++i)
-        for (int k = 0; k < kRows; ++k) ACDF_PREFETCH(point.codes[k] + (walks->node[i] & 0x7FFF));
+        for (int k = 0; k < kRows; ++k) ACDF_PREFETCH(point.by.tabled.codes[k] + (walks->node[i] & 0x7FFF));
     draw_cut_lights(local, cut, sampled, at, light, cells);
     return there ^ light ^ mixed;
 }
@@ -122,7 +122,7 @@ ACDF_LANE void draw_cut_block(const AcdfLocal& local, const AcdfLocalPoint& poin
         const unsigned there = (1u << std::min<std::size_t>(count - at, ACDF_WIDTH)) - 1u;
         lost |= (std::uint64_t)enter_parts(local, point, cut, sampled, at, there, &walks, &cells) << at;
     }
-    walk(*local.tables, SameRows{point.codes}, &walks);
+    walk(*local.tables, SameRows{point.by.tabled.codes}, &walks);
     end_walks(
         local, walks, [&](std::size_t at, Vector of_all) { return loaded(&walks.probability[at]) * of_all; },
         &cells);

@@ -34,7 +34,7 @@ ACDF_LANE void weigh_cut_tiles(const AcdfLocal& local, const AcdfLocalPoint& poi
         const AcdfCutPart* const part = &cut.part[number[i]];
         const auto tile = (std::uint32_t)cells->tile[i];
         const AcdfMixture mix = acdf_cut_batch_mixture(part);
-        double given = acdf_tile_share_rows(words, &local.tables->tiles, &mix, point.codes, kRows,
+        double given = acdf_tile_share_rows(words, &local.tables->tiles, &mix, point.by.tabled.codes, kRows,
                                             acdf_local_tile(local.tables, tile), part->depth);
         if (given > 0.0) given = acdf_positive(given / acdf_mixture_sum(&mix));
         cells->probability[i] = acdf_cut_found_probability(&local, &cut, part, &mix, tile, given);

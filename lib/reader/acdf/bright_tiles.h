@@ -8,18 +8,31 @@
 extern "C" {
 #endif
 
+/* A normal in the scale of the weights of the rows around it. */
+typedef struct AcdfScaledNormal {
+    double normal[3], length;
+} AcdfScaledNormal;
+
+ACDF_INLINE AcdfScaledNormal acdf_local_scaled_normal(const AcdfLocalPoint* point) {
+    AcdfScaledNormal out;
+    int i;
+    for (i = 0; i < 3; ++i) out.normal[i] = point->scale * (double)point->surface[i];
+    out.length = point->length;
+    return out;
+}
+
 /* Weight of a bright tile: its share times the mean over it of the cosine above the horizon. It is taken as spread
  * evenly from -radius to radius around its middle, so that no weight is 0 where any of it can be seen. */
-ACDF_INLINE double acdf_cap_weight(const AcdfLocalPoint* point, double x, double y, double z, double radius,
+ACDF_INLINE double acdf_cap_weight(const AcdfScaledNormal* at, double x, double y, double z, double radius,
                                    double share) {
-    const double height = point->normal[0] * x + point->normal[1] * y + point->normal[2] * z;
-    radius *= point->length;
+    const double height = at->normal[0] * x + at->normal[1] * y + at->normal[2] * z;
+    radius *= at->length;
     /* The horizon rarely cuts a bright tile, and whether one is above it cannot be predicted: no branch. */
     if (fabs(height) < radius) return share * ((height + radius) * (height + radius) / (4.0 * radius));
     return share * (0.5 * (height + fabs(height))); /* 0 below, exactly the height above */
 }
-ACDF_FN double acdf_bright_tile_weight(const AcdfBrightTile* light, const AcdfLocalPoint* point) {
-    return acdf_cap_weight(point, (double)light->direction[0], (double)light->direction[1],
+ACDF_FN double acdf_bright_tile_weight(const AcdfBrightTile* light, const AcdfScaledNormal* at) {
+    return acdf_cap_weight(at, (double)light->direction[0], (double)light->direction[1],
                            (double)light->direction[2], (double)light->radius, (double)light->share);
 }
 
@@ -30,11 +43,11 @@ typedef struct AcdfHorizon {
     __m128d normal[3], length;
 } AcdfHorizon;
 
-ACDF_INLINE AcdfHorizon acdf_horizon(const AcdfLocalPoint* point) {
+ACDF_INLINE AcdfHorizon acdf_horizon(const AcdfScaledNormal* at) {
     AcdfHorizon out;
     int i;
-    for (i = 0; i < 3; ++i) out.normal[i] = _mm_set1_pd(point->normal[i]);
-    out.length = _mm_set1_pd(point->length);
+    for (i = 0; i < 3; ++i) out.normal[i] = _mm_set1_pd(at->normal[i]);
+    out.length = _mm_set1_pd(at->length);
     return out;
 }
 ACDF_INLINE AcdfTwoWeights acdf_bright_tile_pair_weights(const AcdfBrightTilePair* pair,
@@ -56,12 +69,12 @@ typedef struct AcdfTwoWeights {
     double of[2];
 } AcdfTwoWeights;
 typedef struct AcdfHorizon {
-    const AcdfLocalPoint* point;
+    const AcdfScaledNormal* at;
 } AcdfHorizon;
 
-ACDF_INLINE AcdfHorizon acdf_horizon(const AcdfLocalPoint* point) {
+ACDF_INLINE AcdfHorizon acdf_horizon(const AcdfScaledNormal* at) {
     AcdfHorizon out;
-    out.point = point;
+    out.at = at;
     return out;
 }
 ACDF_INLINE AcdfTwoWeights acdf_bright_tile_pair_weights(const AcdfBrightTilePair* pair,
@@ -69,7 +82,7 @@ ACDF_INLINE AcdfTwoWeights acdf_bright_tile_pair_weights(const AcdfBrightTilePai
     AcdfTwoWeights out;
     int i;
     for (i = 0; i < 2; ++i)
-        out.of[i] = acdf_cap_weight(horizon->point, pair->direction[0][i], pair->direction[1][i],
+        out.of[i] = acdf_cap_weight(horizon->at, pair->direction[0][i], pair->direction[1][i],
                                     pair->direction[2][i], pair->radius[i], pair->share[i]);
     return out;
 }
@@ -79,13 +92,45 @@ ACDF_INLINE void acdf_store_weights(AcdfTwoWeights weights, double out[2]) {
 }
 #endif
 
-/* The weight of bright tile `k`, times the share of it that the point's position sees. */
-ACDF_FN double acdf_local_bright_tile_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
-    const double weight = acdf_bright_tile_weight(&local->bright_tiles[k], point);
-    return point->visibility.count > 0 ? weight * acdf_mixture_visibility(&point->visibility, 1 + k) : weight;
+/* What the position of a point sees, as acdf_mixture_visibility has it. */
+ACDF_FN double acdf_local_visibility(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t index) {
+    const AcdfLocalPlace* place = &point->by.place;
+    double sum = 0.0;
+    uint32_t i;
+    for (i = 0; i < point->cells; ++i)
+        sum += place->weight[i] *
+               acdf_visibility_of_code(acdf_visibility_row(&local->visibility, place->row[i])[index]);
+    return sum;
 }
 
-/* Two bright tiles, from number k on, for those who have no tables. */
+/* The visibility cells of a point, but for their rows. */
+ACDF_INLINE void acdf_local_numbers_of_cells(const AcdfLocalPoint* point, AcdfVisibilityMixture* out) {
+    int i;
+    out->count = point->cells;
+    for (i = 0; i < ACDF_MAX_CELLS_MIXED; ++i) { /* as many as the compiler knows */
+        out->number[i] = point->by.place.row[i];
+        out->weight[i] = point->by.place.weight[i];
+    }
+}
+ACDF_INLINE void acdf_local_cells(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfVisibilityMixture* out) {
+    acdf_local_numbers_of_cells(point, out);
+    acdf_visibility_open(&local->visibility, local->blend.tiles->tile_count, out);
+}
+
+/* The weight of bright tile `k`, times the share of it that the point's position sees. */
+ACDF_FN double acdf_local_bright_tile_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
+    const AcdfScaledNormal at = acdf_local_scaled_normal(point);
+    const double weight = acdf_bright_tile_weight(&local->bright_tiles[k], &at);
+    return point->cells > 0 ? weight * acdf_local_visibility(local, point, 1 + k) : weight;
+}
+
+/* The pairs of bright tiles that a normal may see, a bit each; `facet`: its own, or null. */
+ACDF_INLINE uint32_t acdf_local_seen(const AcdfLocal* local, const AcdfFacet* facet) {
+    if (facet) return facet->seen;
+    return local->bright_tile_count > 0 ? 0xFFFFFFFFu >> (31 - (local->bright_tile_count - 1) / 2) : 0;
+}
+
+/* Two bright tiles, from number k on. */
 ACDF_FN void acdf_local_bright_tile_pair(const AcdfLocal* local, uint32_t k, AcdfBrightTilePair* out) {
     uint32_t i;
     int axis;
@@ -98,13 +143,21 @@ ACDF_FN void acdf_local_bright_tile_pair(const AcdfLocal* local, uint32_t k, Acd
     }
 }
 
+/* Pair k: of tables, or made in `room`. */
+ACDF_INLINE const AcdfBrightTilePair* acdf_local_pair(const AcdfLocal* local, uint32_t k,
+                                                      AcdfBrightTilePair* room) {
+    if (local->tables) return acdf_local_bright_tiles(local->tables) + k;
+    acdf_local_bright_tile_pair(local, 2 * k, room);
+    return room;
+}
+
 /* acdf_cap_weight of light i of two without a quotient, as the fast shape has it; `inverse` is that of the point's
  * length. */
-ACDF_INLINE double acdf_pair_weight(const AcdfLocalPoint* point, const AcdfBrightTilePair* pair, uint32_t i,
+ACDF_INLINE double acdf_pair_weight(const AcdfScaledNormal* at, const AcdfBrightTilePair* pair, uint32_t i,
                                     double inverse) {
-    const double height = point->normal[0] * pair->direction[0][i] + point->normal[1] * pair->direction[1][i] +
-                          point->normal[2] * pair->direction[2][i];
-    const double radius = pair->radius[i] * point->length, above = height + radius;
+    const double height = at->normal[0] * pair->direction[0][i] + at->normal[1] * pair->direction[1][i] +
+                          at->normal[2] * pair->direction[2][i];
+    const double radius = pair->radius[i] * at->length, above = height + radius;
     return fabs(height) < radius ? above * above * (pair->quarter[i] * inverse)
                                  : pair->share[i] * (height > 0.0 ? height : 0.0);
 }
@@ -123,49 +176,54 @@ ACDF_INLINE __m128d acdf_pair_weights(const AcdfHorizon* horizon, const AcdfBrig
 }
 #endif
 
-/* The weight of bright tile k by tables, without a branch. */
-ACDF_INLINE double acdf_tabled_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
-    const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local->tables) + k / 2;
+/* The weight of bright tile k in the fast shape, without a branch on it. */
+ACDF_INLINE double acdf_fast_bright_tile_weight(const AcdfLocal* local, const AcdfScaledNormal* at, uint32_t k) {
+    AcdfBrightTilePair room;
+    const AcdfBrightTilePair* pair = acdf_local_pair(local, k / 2, &room);
 #ifdef ACDF_SSE2
     const uint32_t i = k % 2;
-    const double height = point->normal[0] * pair->direction[0][i] + point->normal[1] * pair->direction[1][i] +
-                          point->normal[2] * pair->direction[2][i];
-    const double radius = pair->radius[i] * point->length, above = height + radius;
-    const double cut = above * above * (pair->quarter[i] * (1.0 / point->length));
+    const double height = at->normal[0] * pair->direction[0][i] + at->normal[1] * pair->direction[1][i] +
+                          at->normal[2] * pair->direction[2][i];
+    const double radius = pair->radius[i] * at->length, above = height + radius;
+    const double cut = above * above * (pair->quarter[i] * (1.0 / at->length));
     const __m128d h = _mm_set_sd(height);
     const __m128d whole = _mm_mul_sd(_mm_set_sd(pair->share[i]), _mm_max_sd(h, _mm_setzero_pd()));
     const __m128d is_cut = _mm_cmplt_sd(_mm_andnot_pd(_mm_set1_pd(-0.0), h), _mm_set_sd(radius));
     return _mm_cvtsd_f64(_mm_or_pd(_mm_and_pd(is_cut, _mm_set_sd(cut)), _mm_andnot_pd(is_cut, whole)));
 #else
-    return acdf_pair_weight(point, pair, k % 2, 1.0 / point->length);
+    return acdf_pair_weight(at, pair, k % 2, 1.0 / at->length);
 #endif
 }
 
-/* The sum of the weights of the bright tiles that are above all horizons in the facet of a normal. */
-ACDF_INLINE double acdf_facet_whole(const AcdfLocalPoint* point) {
-    const double* whole = point->facet->whole;
-    return point->normal[0] * whole[0] + point->normal[1] * whole[1] + point->normal[2] * whole[2];
-}
-/* The sum of the weights of all bright tiles at a normal whose facet is known. */
-ACDF_INLINE double acdf_facet_bright_tiles(const AcdfLocal* local, const AcdfLocalPoint* point) {
-    const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local->tables);
-    const double inverse = 1.0 / point->length;
-    uint32_t left = point->facet->others;
+/* The sum of the weights of pairs, a bit each. */
+ACDF_INLINE double acdf_pairs_weight(const AcdfLocal* local, const AcdfScaledNormal* at, uint32_t left) {
+    const double inverse = 1.0 / at->length;
+    AcdfBrightTilePair room;
 #ifdef ACDF_SSE2
-    const AcdfHorizon horizon = acdf_horizon(point);
+    const AcdfHorizon horizon = acdf_horizon(at);
     __m128d sum = _mm_setzero_pd();
     for (; left; left &= left - 1)
-        sum = _mm_add_pd(sum, acdf_pair_weights(&horizon, pair + acdf_lowest_bit(left), _mm_set1_pd(inverse)));
-    return acdf_facet_whole(point) + _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
+        sum = _mm_add_pd(sum, acdf_pair_weights(&horizon, acdf_local_pair(local, acdf_lowest_bit(left), &room),
+                                                _mm_set1_pd(inverse)));
+    return _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
 #else
     double sum[2] = {0.0, 0.0};
     for (; left; left &= left - 1) {
-        const AcdfBrightTilePair* of = pair + acdf_lowest_bit(left);
-        sum[0] += acdf_pair_weight(point, of, 0, inverse);
-        sum[1] += acdf_pair_weight(point, of, 1, inverse);
+        const AcdfBrightTilePair* of = acdf_local_pair(local, acdf_lowest_bit(left), &room);
+        sum[0] += acdf_pair_weight(at, of, 0, inverse);
+        sum[1] += acdf_pair_weight(at, of, 1, inverse);
     }
-    return acdf_facet_whole(point) + (sum[0] + sum[1]);
+    return sum[0] + sum[1];
 #endif
+}
+
+/* The sum of the weights of all bright tiles at a normal whose facet is known: of those that are above all horizons
+ * there, and of others. */
+ACDF_INLINE double acdf_facet_bright_tiles(const AcdfLocal* local, const AcdfFacet* facet,
+                                           const AcdfScaledNormal* at) {
+    const double* whole = facet->whole;
+    return at->normal[0] * whole[0] + at->normal[1] * whole[1] + at->normal[2] * whole[2] +
+           acdf_pairs_weight(local, at, facet->others);
 }
 
 #ifdef __cplusplus

@@ -14,12 +14,22 @@
 extern "C" {
 #endif
 
+/* Samples a tile of a mixture below a node as the position sees it. */
+ACDF_FN uint32_t acdf_local_sample_visible(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                           const AcdfMixture* mix, uint32_t node, double* u, AcdfRange* range,
+                                           double* probability) {
+    AcdfVisibilityMixture cells;
+    acdf_local_cells(local, point, &cells);
+    return acdf_visibility_sample_below(&local->visibility, &local->blend, mix, &cells, node, u, range,
+                                        probability);
+}
+
 /* Samples a tile of the mixture: by the traversal for the normal alone, or for normal and position. */
 ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                         AcdfRange* range, double* probability) {
-    if (point->visibility.count > 0)
-        return acdf_visibility_sample_below(&local->visibility, &local->blend, &point->mix, &point->visibility,
-                                            acdf_blend_root(&local->blend), u, range, probability);
+    if (point->cells > 0)
+        return acdf_local_sample_visible(local, point, &point->mix, acdf_blend_root(&local->blend), u, range,
+                                         probability);
     return acdf_blend_sample_tile(&local->blend, &point->mix, u, range, probability);
 }
 
@@ -43,8 +53,8 @@ ACDF_INLINE uint32_t acdf_local_table_tile(const AcdfLocal* local, const AcdfLoc
     double from[2], given;
     uint32_t tile;
     acdf_local_of_mixture(point, u, from);
-    tile = acdf_tile_sample(acdf_local_words(local->tables), tables, &point->mix, point->codes, tables->root, from,
-                            u, &given);
+    tile = acdf_tile_sample(acdf_local_words(local->tables), tables, &point->mix, point->by.tabled.codes,
+                            tables->root, from, u, &given);
     *probability = acdf_local_sampled_tile(local, point, tile, given, range);
     return tile;
 }
@@ -112,14 +122,15 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
     double p;
-    if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_sample(local, point, 1, u);
+    if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_sample(local, point, u);
     if (point->what == ACDF_LOCAL_ROWS)
-        return acdf_rows_sample(local->rows_of_normals, local->environment.halved, &grid, &point->rows, u);
+        return acdf_rows_sample(local->rows_of_normals, local->environment.halved, &grid, &point->by.rows, u);
     if (local->environment.halved) return acdf_environment_halved_sample(&local->environment, u[0], u[1]);
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     p = point->what == ACDF_LOCAL_BLEND
             ? acdf_local_blend_sample(local, point, u, range)
-            : acdf_short_tree_sample(local->environment.tree, local->environment.tree_units, point->root, u, range);
+            : acdf_short_tree_sample(local->environment.tree, local->environment.tree_units, point->by.root, u,
+                                     range);
     return acdf_local_direction_sample(local, point, &grid, range, u, p);
 }
 
@@ -127,11 +138,15 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
  * direction as it was rounded. */
 ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_portal_sample(const AcdfLocal* local,
                                                                  const AcdfLocalPoint* point, double* u) {
+    const AcdfVisiblePortals* portals = &point->by.place.portals;
+    AcdfVisibilityMixture cells;
+    AcdfPortalEye eye;
     AcdfDirectionSample out;
-    if (acdf_visible_portals_choose(&point->visible_portals, u))
-        acdf_visible_portals_sample(&point->visible_portals, u, out.direction);
+    acdf_local_eye(local, point, &cells, &eye);
+    if (acdf_visible_portals_choose(portals, u)) acdf_visible_portals_sample(&eye, portals, u, out.direction);
     else out = acdf_local_row_sample(local, point, u);
-    out.pdf = acdf_local_light_pdf(local, point, out.direction);
+    out.pdf =
+        acdf_visible_portals_pdf(&eye, portals, out.direction, acdf_local_row_pdf(local, point, out.direction));
     return out;
 }
 
@@ -149,26 +164,26 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_sample_at(const AcdfLocal
         out.pdf = acdf_local_light_pdf(local, point, out.direction);
     } else {
         if (local->cosine_share > 0.0) u[0] = (u[0] - local->cosine_share) / (1.0 - local->cosine_share);
-        out = point->visible_portals.count > 0 ? acdf_local_portal_sample(local, point, u)
-                                               : acdf_local_row_sample(local, point, u);
+        out =
+            point->portals > 0 ? acdf_local_portal_sample(local, point, u) : acdf_local_row_sample(local, point, u);
     }
     out.pdf = acdf_local_combined_pdf(local, point, out.direction, out.pdf);
     return acdf_returned(&out);
 }
-/* Samples where rows of the fast shape are all there is; `weighed` as in acdf_local_fast_sample_cell. */
+/* Samples where rows of the fast shape are all there is. */
 ACDF_INLINE AcdfDirectionSample acdf_local_only_fast_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                            const int weighed, double u0, double u1) {
+                                                            double u0, double u1) {
     AcdfDirectionSample out;
     double u[2];
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
-    out = acdf_local_fast_sample(local, point, weighed, u);
+    out = acdf_local_fast_sample(local, point, u);
     return acdf_returned(&out);
 }
 ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_fast_sample_at(const AcdfLocal* local,
                                                                   const AcdfLocalPoint* point, double u0,
                                                                   double u1) {
-    return acdf_local_only_fast_sample(local, point, 1, u0, u1);
+    return acdf_local_only_fast_sample(local, point, u0, u1);
 }
 
 /* Samples a direction; u0 (phi) and u1 (theta) in [0, 1]. Values outside are clamped, NaN counts as 0. The pdf is
@@ -194,9 +209,9 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_new_fast_sample(const AcdfLoc
     if (local->cosine_share != 0.0 || !local->tables->facets ||
         !acdf_local_fast_corners(local, point.surface, 1, &point))
         return acdf_local_any_new_sample(local, normal, u0, u1);
-    acdf_local_fast_sum(local, 0, &point);
+    acdf_local_fast_sum(local, &point);
     if (point.what != ACDF_LOCAL_FAST) return acdf_local_any_new_sample(local, normal, u0, u1);
-    return acdf_local_only_fast_sample(local, &point, 0, u0, u1);
+    return acdf_local_only_fast_sample(local, &point, u0, u1);
 }
 /* Samples for a normal of a single call; as acdf_local_sample_at. */
 ACDF_FN AcdfDirectionSample acdf_local_sample(const AcdfLocal* local, const float normal[3], double u0, double u1) {
@@ -221,7 +236,7 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
     if (point.what >= ACDF_LOCAL_BLEND)
         return acdf_clamp(local->environment.total * point.sum / point.length, 0.0, 0x1.fffffffffffffp1023);
     if (point.what == ACDF_LOCAL_NOTHING || !acdf_local_bins(local, normal, &bins)) return 0.0;
-    if (local->rows_of_normals || point.root == local->environment.root) return local->environment.total;
+    if (local->rows_of_normals || point.by.root == local->environment.root) return local->environment.total;
     return acdf_clamp(local->environment.total * (double)local->bins[acdf_nearest_bin(&bins)].share, 0.0,
                       0x1.fffffffffffffp1023); /* a file may have a total and a share whose product is too large */
 }
@@ -244,7 +259,7 @@ ACDF_FN int acdf_local_stored(const AcdfLocal* local, const float normal[3]) {
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
     return point.what >= ACDF_LOCAL_BLEND ||
-           (point.what == ACDF_LOCAL_TREE && !local->rows_of_normals && point.root != local->environment.root);
+           (point.what == ACDF_LOCAL_TREE && !local->rows_of_normals && point.by.root != local->environment.root);
 }
 
 #ifdef __cplusplus

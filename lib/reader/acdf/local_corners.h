@@ -9,10 +9,8 @@ extern "C" {
 #endif
 
 /* Sets the normal in a scale. */
-ACDF_INLINE void acdf_local_scaled(const float normal[3], double scale, double length, AcdfLocalPoint* out) {
-    out->normal[0] = scale * (double)normal[0];
-    out->normal[1] = scale * (double)normal[1];
-    out->normal[2] = scale * (double)normal[2];
+ACDF_INLINE void acdf_local_scaled(double scale, double length, AcdfLocalPoint* out) {
+    out->scale = scale;
     out->length = scale * length;
 }
 ACDF_INLINE double acdf_local_length(const float normal[3]) {
@@ -25,7 +23,7 @@ ACDF_FN void acdf_local_normal(const AcdfLocal* local, const float normal[3], Ac
     const double x = normal[0], y = normal[1], z = normal[2], length = acdf_local_length(normal);
     const double scale =
         local->subdivisions > 0 ? (double)local->subdivisions / (fabs(x) + fabs(y) + fabs(z)) : 1.0 / length;
-    acdf_local_scaled(normal, scale, length, out);
+    acdf_local_scaled(scale, length, out);
 }
 
 /* The number of a triangle: its octant, and the whole parts of |x| and |y| there, counted from the other side where
@@ -91,27 +89,19 @@ ACDF_INLINE const AcdfFacet* acdf_local_find_facet(const AcdfLocal* local, const
 #endif
 }
 
-/* Sets all of a normal's triangle but rows. */
-ACDF_INLINE void acdf_local_set_facet(const float normal[3], const AcdfFacet* facet, double scale,
-                                      AcdfLocalPoint* out) {
-    acdf_local_scaled(normal, scale, acdf_local_length(normal), out);
-    out->facet = facet;
-}
-
 /* Begins a point: nothing serves it. Rows are left open. */
 ACDF_INLINE void acdf_local_no_rows(const float normal[3], AcdfLocalPoint* out) {
     out->what = ACDF_LOCAL_NOTHING;
-    out->root = 0;
-    out->facet = 0;
+    out->cells = out->portals = 0;
     acdf_as_given(normal, out->surface);
-    out->normal[0] = out->normal[1] = out->normal[2] = out->length = out->bright_tiles = out->sum = 0.0;
+    out->scale = out->length = out->bright_tiles = out->sum = 0.0;
     out->mix.count = 0;
 }
 
 /* The environment's tree serves a normal: one of its bins is not stored. */
 ACDF_INLINE int acdf_local_whole(const AcdfLocal* local, AcdfLocalPoint* out) {
     out->what = ACDF_LOCAL_TREE;
-    out->root = local->environment.root;
+    out->by.root = local->environment.root;
     return 0;
 }
 

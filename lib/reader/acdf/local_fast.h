@@ -52,60 +52,27 @@ ACDF_INLINE uint32_t acdf_local_fast_tile(const AcdfLocal* local, const uint32_t
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* How many sums up to bright tiles are not above x. */
-ACDF_INLINE uint32_t acdf_local_fast_passed(const AcdfLocalPoint* point, double x) {
-    uint32_t i;
-#ifdef ACDF_SSE2
-    const __m128d at = _mm_set1_pd(x);
-    __m128i passed = _mm_setzero_si128();
-    for (i = 0; i < point->lit; i += 2)
-        passed = _mm_sub_epi32(passed, _mm_castpd_si128(_mm_cmple_pd(_mm_loadu_pd(&point->light_end[i]), at)));
-    return (uint32_t)_mm_cvtsi128_si32(_mm_add_epi32(passed, _mm_shuffle_epi32(passed, 0x4E)));
-#else
-    uint32_t k = 0;
-    for (i = 0; i < point->lit; ++i) k += (uint32_t) !(x < point->light_end[i]);
-    return k;
-#endif
-}
-
-/* The number of a bright tile that the normal may see. */
-ACDF_INLINE uint32_t acdf_local_lit(const AcdfLocalPoint* point, uint32_t i) {
-    return 2u * point->pair[i / 2] + i % 2;
-}
-
 /* A bright tile that is sampled: its number, its weight, and the sum of those before it. */
 typedef struct AcdfSampledBrightTile {
     uint32_t number;
     double weight, before;
 } AcdfSampledBrightTile;
 
-/* Samples one of the bright tiles that a point has weighted, by x of the sum of weights. */
-ACDF_INLINE AcdfSampledBrightTile acdf_local_fast_bright_tile(const AcdfLocalPoint* point, double x) {
-    uint32_t i = acdf_local_fast_passed(point, x);
-    AcdfSampledBrightTile out;
-    while (i >= point->lit || !(point->light[i] > 0.0)) --i; /* x is the whole of them, or rounded to it */
-    out.number = acdf_local_lit(point, i);
-    out.weight = point->light[i];
-    out.before = i > 0 ? point->light_end[i - 1] : 0.0;
-    return out;
-}
-
-/* Samples a bright tile where they are not weighted, but their facet is known: the first one that takes the sum of
- * acdf_local_tabled_bright_tiles above x. Weight 0 where x is the whole of them, or rounded to it: *whole becomes
- * that.
- */
-ACDF_INLINE AcdfSampledBrightTile acdf_local_facet_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                               double x, double* whole) {
-    const AcdfBrightTilePair* pairs = acdf_local_bright_tiles(local->tables);
-    uint32_t left = point->facet->seen;
+/* Samples a bright tile by x of the sum of weights: the first one that takes their sum above x. Weight 0 where x is
+ * the whole of them, or rounded to it: *whole becomes that. */
+ACDF_INLINE AcdfSampledBrightTile acdf_local_find_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                              double x, double* whole) {
+    uint32_t left = acdf_local_seen(local, point->by.fast.facet);
+    const AcdfScaledNormal normal = acdf_local_scaled_normal(point);
     AcdfSampledBrightTile out = {0, 0.0, 0.0};
+    AcdfBrightTilePair room;
 #ifdef ACDF_SSE2
-    const AcdfHorizon horizon = acdf_horizon(point);
+    const AcdfHorizon horizon = acdf_horizon(&normal);
     const __m128d inverse = _mm_set1_pd(1.0 / point->length), zero = _mm_setzero_pd(), at = _mm_set1_pd(x);
     __m128d end = zero;
     for (; left; left &= left - 1) {
         const uint32_t k = acdf_lowest_bit(left);
-        const __m128d both = acdf_pair_weights(&horizon, pairs + k, inverse), before = end;
+        const __m128d both = acdf_pair_weights(&horizon, acdf_local_pair(local, k, &room), inverse), before = end;
         uint32_t above;
         end = _mm_add_pd(_mm_add_pd(both, _mm_unpacklo_pd(zero, both)), end);
         above = (uint32_t)_mm_movemask_pd(_mm_cmplt_pd(at, end));
@@ -124,8 +91,9 @@ ACDF_INLINE AcdfSampledBrightTile acdf_local_facet_bright_tile(const AcdfLocal* 
     double end = 0.0;
     for (; left; left &= left - 1) {
         const uint32_t k = acdf_lowest_bit(left);
-        const double first = acdf_pair_weight(point, pairs + k, 0, inverse),
-                     second = acdf_pair_weight(point, pairs + k, 1, inverse);
+        const AcdfBrightTilePair* pair = acdf_local_pair(local, k, &room);
+        const double first = acdf_pair_weight(&normal, pair, 0, inverse),
+                     second = acdf_pair_weight(&normal, pair, 1, inverse);
         const double middle = first + end, last = (second + first) + end;
         if (x < last) {
             const uint32_t is_second = (uint32_t) !(x < middle);
@@ -141,52 +109,39 @@ ACDF_INLINE AcdfSampledBrightTile acdf_local_facet_bright_tile(const AcdfLocal* 
     return out;
 }
 
-/* The bright tile that x of the sum of weights samples at a point, of which none is known but a facet if `weighed`
- * is 0; x is rescaled to [0, 1]. */
-ACDF_INLINE AcdfSampledBrightTile acdf_local_sample_fast_bright_tile(const AcdfLocal* local,
-                                                                     const AcdfLocalPoint* point, const int weighed,
-                                                                     double x, double* u) {
-    AcdfSampledBrightTile out;
+/* The bright tile that x of the sum of weights samples at a point; x is rescaled to [0, 1]. */
+ACDF_INLINE AcdfSampledBrightTile acdf_local_fast_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                              double x, double* u) {
     double whole = 0.0;
-    if (weighed) out = acdf_local_fast_bright_tile(point, x);
-    else {
-        out = acdf_local_facet_bright_tile(local, point, x, &whole);
-        if (!(out.weight > 0.0)) out = acdf_local_facet_bright_tile(local, point, whole * (1.0 - 0x1p-53), &whole);
-    }
+    AcdfSampledBrightTile out = acdf_local_find_bright_tile(local, point, x, &whole);
+    if (!(out.weight > 0.0)) out = acdf_local_find_bright_tile(local, point, whole * (1.0 - 0x1p-53), &whole);
     *u = acdf_unit_interval((x - out.before) / out.weight);
     return out;
 }
 
-/* Samples a cell; u and range as in acdf_tree_sample. Returns its probability. `weighed`: whether the point has the
- * weight of each bright tile, or a facet. */
+/* Samples a cell; u and range as in acdf_tree_sample. Returns its probability. */
 ACDF_INLINE AcdfFastShare acdf_local_fast_sample_cell(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                      const int weighed, double* u, AcdfRange* range) {
+                                                      double* u, AcdfRange* range) {
+    const AcdfFastPoint* fast = &point->by.fast;
     const double x = u[0] * point->sum;
     AcdfFastShare share;
     AcdfFastGrid grid;
     uint32_t tile;
     if (x < point->bright_tiles || point->mix.count == 0) {
-        const AcdfSampledBrightTile light = acdf_local_sample_fast_bright_tile(local, point, weighed, x, u);
+        const AcdfSampledBrightTile light = acdf_local_fast_bright_tile(local, point, x, u);
         tile = local->bright_tiles[light.number].tile;
         share.of = light.weight;
         share.all = point->sum * ACDF_FAST_STEPS;
     } else {
-        const double most = 32767.0 * point->fast.whole * (1.0 - 0x1p-53);
-        const double of_mixture = (x - point->bright_tiles) * point->step;
-        tile = acdf_fast_sample_tile(&local->fast, &point->fast, of_mixture < most ? of_mixture : most, u, &share);
-        share.of *= point->unit;
+        const double most = 32767.0 * fast->mix.whole * (1.0 - 0x1p-53);
+        const double of_mixture = (x - point->bright_tiles) * fast->step;
+        tile = acdf_fast_sample_tile(&local->fast, &fast->mix, of_mixture < most ? of_mixture : most, u, &share);
+        share.of *= fast->unit;
         share.all *= ACDF_FAST_STEPS;
     }
     grid = acdf_local_fast_sampled(local, tile, range);
     share.of *= acdf_fast_sample_cell(&grid, u, range);
     return share;
-}
-
-/* The weight of bright tile `number` - 1; for 0 that of any. Without tables points have all. */
-ACDF_INLINE double acdf_local_fast_bright_tile_of(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                  uint32_t light) {
-    const uint32_t k = light - (uint32_t)(light > 0);
-    return local->tables ? acdf_tabled_weight(local, point, k) : point->light[k];
 }
 
 /* The cell of a square in its tile, which becomes `range`, and its probability: 0 where no sample can fall. */
@@ -196,10 +151,11 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_find(const AcdfLocal* local, const Acd
                                             : acdf_fast_grid(&local->fast, local->blend.roots[tile], range);
     const double inside = acdf_fast_find_cell(&grid, square, range);
     const uint32_t light = acdf_local_bright_tile_of(local, tile);
-    AcdfFastShare share = acdf_fast_share(&point->fast, tile);
-    share.of *= point->unit;
+    AcdfFastShare share = acdf_fast_share(&point->by.fast.mix, tile);
+    share.of *= point->by.fast.unit;
     if (light > 0) { /* no row gives it any */
-        share.of = acdf_local_fast_bright_tile_of(local, point, light);
+        const AcdfScaledNormal normal = acdf_local_scaled_normal(point);
+        share.of = acdf_fast_bright_tile_weight(local, &normal, light - 1);
         share.all = point->sum;
     }
     share.of *= inside;
@@ -239,14 +195,14 @@ ACDF_INLINE AcdfDirectionSample acdf_local_fast_direction_sample(const AcdfLocal
     return out;
 }
 
-/* acdf_local_row_sample of this shape; `weighed` as above. */
+/* acdf_local_row_sample of this shape. */
 ACDF_INLINE AcdfDirectionSample acdf_local_fast_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                       const int weighed, double* u) {
+                                                       double* u) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
     AcdfFastShare share;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
-    share = acdf_local_fast_sample_cell(local, point, weighed, u, range);
+    share = acdf_local_fast_sample_cell(local, point, u, range);
     return acdf_local_fast_direction_sample(local, &grid, range, u, &share);
 }
 

@@ -48,29 +48,47 @@ ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfN
  * points into the memory of the AcdfLocal that made it: not for one that was opened otherwise, or moved since. */
 enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND, ACDF_LOCAL_FAST, ACDF_LOCAL_ROWS };
 
+/* Rows of a blend by runtime tables. */
+typedef struct AcdfTabledRows {
+    const AcdfFacet* facet;                   /* that of the normal; null: tables have none */
+    const uint8_t* codes[ACDF_NORMALS_MIXED]; /* the rows in the tables */
+    const double* parts[ACDF_NORMALS_MIXED];  /* what they give to each tile, where tables have that */
+} AcdfTabledRows;
+
+/* Where a position lies: by these numbers all else that it needs is found in the file again. */
+typedef struct AcdfLocalPlace {
+    uint32_t row[ACDF_MAX_CELLS_MIXED]; /* of visibility cells */
+    double weight[ACDF_MAX_CELLS_MIXED];
+    AcdfVisiblePortals portals; /* where it sees any */
+} AcdfLocalPlace;
+
+/* Rows of the fast shape. */
+typedef struct AcdfFastPoint {
+    const AcdfFacet* facet; /* as above */
+    AcdfFastMixture mix;    /* AcdfLocalPoint::mix has the weights, too */
+    double step;            /* 32767 times the mixture's whole a weight */
+    double unit;            /* that of acdf_fast_share, of the sum of all weights */
+} AcdfFastPoint;
+
 typedef struct AcdfLocalPoint {
-    int what;
-    uint32_t root;    /* of the tree */
-    float surface[3]; /* the normal as given */
-    double normal[3]; /* with the weights of the mixture: the weighted sum of its bins' corners */
-    double length;    /* of that */
-    AcdfMixture mix;  /* of the blend; the weights are those that reach the position */
-    const uint8_t* codes[ACDF_MAX_ROWS_MIXED]; /* the rows in the runtime tables, where there are such */
-    const double* parts[ACDF_MAX_ROWS_MIXED];  /* what they give to each tile, where there are such */
-    const AcdfFacet* facet;                    /* that of the normal in the runtime tables; null: they have none */
-    AcdfRowMixture rows;                       /* of one tree of halvings */
-    double bright_tiles;                       /* sum of the weights of the bright tiles */
-    double sum;                                /* of all weights */
-    AcdfVisibilityMixture visibility;          /* empty: the position is not known, or does not matter */
-    AcdfVisiblePortals visible_portals;        /* as the position sees them; its count is 0 where there are none */
-    AcdfFastMixture fast;                      /* of the fast shape; `mix` has the weights, too */
-    double step;                               /* of the fast shape: 32767 times the mixture's whole a weight */
-    double unit;                               /* of the fast shape: that of acdf_fast_share, of `sum` */
-    uint32_t lit; /* of the fast shape: how many bright tiles the normal may see, by twos; */
-    uint8_t pair[ACDF_MAX_BRIGHT_TILES / 2]; /* the number of each two, */
-    double light[ACDF_MAX_BRIGHT_TILES];     /* their weights, */
-    double light_end[ACDF_MAX_BRIGHT_TILES]; /* and the sums of these from the first one to each */
+    uint8_t what;
+    uint8_t cells;             /* of visibility that are mixed; 0: the position is not known, or does not matter */
+    uint8_t portals;           /* that the position sees */
+    float surface[3];          /* the normal as given */
+    double scale;              /* of that to the weighted sum of the corners of its bins */
+    double length;             /* of that sum */
+    double bright_tiles;       /* sum of the weights of the bright tiles */
+    double sum;                /* of all weights */
+    AcdfMixture mix;           /* of the blend; the weights are those that reach the position */
+    union {                    /* what serves it has one of these */
+        uint32_t root;         /* ACDF_LOCAL_TREE */
+        AcdfTabledRows tabled; /* ACDF_LOCAL_BLEND without a position */
+        AcdfLocalPlace place;  /* ACDF_LOCAL_BLEND in visibility cells */
+        AcdfFastPoint fast;    /* ACDF_LOCAL_FAST */
+        AcdfRowMixture rows;   /* ACDF_LOCAL_ROWS */
+    } by;
 } AcdfLocalPoint;
+ACDF_STATIC_ASSERT(sizeof(AcdfLocalPoint) <= 256); /* renderers keep many */
 
 #ifdef __cplusplus
 }

@@ -11,7 +11,7 @@ extern "C" {
 
 /* Whether runtime tables know the tiles as a point sees them. */
 ACDF_INLINE int acdf_local_tabled(const AcdfLocal* local, const AcdfLocalPoint* point) {
-    return local->tables && point->visibility.count == 0;
+    return local->tables && point->cells == 0;
 }
 
 /* Where the curves of a tile begin; ACDF_NO_ROOT: it is a cell. */
@@ -33,8 +33,8 @@ ACDF_INLINE double acdf_local_found_tile(const AcdfLocal* local, const AcdfLocal
     const AcdfTileRecord* record = acdf_local_tile(local->tables, tile);
     double given;
     acdf_local_ahead(local, record);
-    given =
-        acdf_tile_share(acdf_local_words(local->tables), &local->tables->tiles, mix, point->codes, record, first);
+    given = acdf_tile_share(acdf_local_words(local->tables), &local->tables->tiles, mix, point->by.tabled.codes,
+                            record, first);
     acdf_tile_range(record, range);
     return given > 0.0 ? acdf_positive(given / acdf_mixture_sum(mix)) : 0.0;
 }
@@ -72,6 +72,16 @@ ACDF_INLINE AcdfLocalSpot acdf_local_spot(const AcdfLocal* local, const AcdfLoca
     return out;
 }
 
+/* Finds the tile of a square in a mixture below a node as the position sees it. */
+ACDF_FN uint32_t acdf_local_find_visible(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                         const AcdfMixture* mix, uint32_t node, const uint32_t* square,
+                                         AcdfRange* range, double* probability) {
+    AcdfVisibilityMixture cells;
+    acdf_local_cells(local, point, &cells);
+    return acdf_visibility_find_below(&local->visibility, &local->blend, mix, &cells, node, square, range,
+                                      probability);
+}
+
 /* The cell of a square in the mixture of bright tiles and rows, which becomes `range`, as acdf_tree_find does.
  * Returns its probability, 0 where no sample can fall. */
 ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfLocalSpot* spot,
@@ -80,9 +90,9 @@ ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoin
     uint32_t tile = spot->tile;
     if (acdf_local_tabled(local, point))
         probability = acdf_local_found_tile(local, point, &point->mix, tile, 0, range);
-    else if (point->visibility.count > 0)
-        tile = acdf_visibility_find_below(&local->visibility, &local->blend, &point->mix, &point->visibility,
-                                          acdf_blend_root(&local->blend), spot->square, range, &probability);
+    else if (point->cells > 0)
+        tile = acdf_local_find_visible(local, point, &point->mix, acdf_blend_root(&local->blend), spot->square,
+                                       range, &probability);
     else tile = acdf_blend_find_tile(&local->blend, &point->mix, spot->square, range, 0, &probability);
     probability = acdf_local_tile_probability(local, point, tile, probability);
     return acdf_local_find_inside(local, tile, probability, spot->square, range);
@@ -94,7 +104,7 @@ ACDF_INLINE float acdf_local_piece_pdf(const AcdfLocal* local, const AcdfLocalPo
     const AcdfMixture* mix = &point->mix;
     double part[ACDF_MAX_ROWS_MIXED], probability;
     int i;
-    for (i = 0; i < mix->count; ++i) part[i] = point->parts[i][piece->tile];
+    for (i = 0; i < mix->count; ++i) part[i] = point->by.tabled.parts[i][piece->tile];
     probability = acdf_mixture_of(mix, mix->count, part);
     if (probability > 0.0) probability = acdf_positive(probability / acdf_mixture_sum(mix));
     probability = acdf_local_tile_probability(local, point, piece->tile, probability);
@@ -134,7 +144,7 @@ ACDF_FN float acdf_local_spot_pdf(const AcdfLocal* local, const AcdfLocalPoint* 
             if (!acdf_local_square(&grid, direction, told)) return 0.0f;
             square = told;
         }
-        p = acdf_tree_locate(local->environment.tree, local->environment.tree_units, point->root, square, range);
+        p = acdf_tree_locate(local->environment.tree, local->environment.tree_units, point->by.root, square, range);
     }
     return p > 0.0 ? acdf_local_cell_pdf(local, &grid, direction, range, p) : 0.0f;
 }
@@ -163,7 +173,7 @@ ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint
     if (point->what == ACDF_LOCAL_NOTHING) return 0.0;
     if (point->what == ACDF_LOCAL_ROWS) {
         AcdfSpan box[2];
-        const double p = acdf_rows_find(local->rows_of_normals, env->halved, &point->rows, square, box);
+        const double p = acdf_rows_find(local->rows_of_normals, env->halved, &point->by.rows, square, box);
         acdf_halved_ranges(box, range);
         return p;
     }
@@ -172,7 +182,7 @@ ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint
         return acdf_environment_halved_cell(env, square, steps, range);
     }
     if (point->what == ACDF_LOCAL_TREE)
-        return acdf_tree_locate(env->tree, env->tree_units, point->root, square, range);
+        return acdf_tree_locate(env->tree, env->tree_units, point->by.root, square, range);
     if (point->what == ACDF_LOCAL_FAST) {
         share = acdf_local_fast_find(local, point, acdf_local_fast_tile(local, square, range), square, range);
         return share.of / share.all;
@@ -192,7 +202,7 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
     if (point->what == ACDF_LOCAL_ROWS) {
         const AcdfGrid grid = acdf_environment_grid(&local->environment);
         const AcdfRowSpot at = acdf_rows_spot(local->rows_of_normals, &grid, direction);
-        return acdf_rows_pdf(local->rows_of_normals, local->environment.halved, &grid, &point->rows, &at,
+        return acdf_rows_pdf(local->rows_of_normals, local->environment.halved, &grid, &point->by.rows, &at,
                              direction);
     }
     if (local->environment.halved) return acdf_environment_halved_pdf(&local->environment, direction);
@@ -201,11 +211,27 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
     return acdf_local_spot_pdf(local, point, direction, &spot);
 }
 
+/* Looks from a point that sees portals. */
+ACDF_INLINE void acdf_local_eye(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfVisibilityMixture* cells,
+                                AcdfPortalEye* out) {
+    acdf_local_numbers_of_cells(point, cells);
+    acdf_portal_eye(&local->portals, &local->visibility, cells, point->by.place.portals.position, point->surface,
+                    out);
+}
+
+/* Of rows and portals together; `row`: that of rows. */
+ACDF_OUTLINE_ON_CPU float acdf_local_portals_pdf(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                 const float direction[3], float row) {
+    AcdfVisibilityMixture cells;
+    AcdfPortalEye eye;
+    acdf_local_eye(local, point, &cells, &eye);
+    return acdf_visible_portals_pdf(&eye, &point->by.place.portals, direction, row);
+}
+
 /* The part of the pdf that follows the light: that of rows, and of portals where a position sees any. */
 ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     const float row = acdf_local_row_pdf(local, point, direction);
-    return point->visible_portals.count > 0 ? acdf_visible_portals_pdf(&point->visible_portals, direction, row)
-                                            : row;
+    return point->portals > 0 ? acdf_local_portals_pdf(local, point, direction, row) : row;
 }
 
 /* The pdf of the mixture of light and cosine: `light` is the pdf of the light's part. */
@@ -282,7 +308,7 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_fast_pdf(const AcdfLocal* local, const 
     acdf_local_no_rows(normal, &point);
     if (!local->tables->facets || !acdf_local_fast_corners(local, point.surface, 0, &point))
         return acdf_local_any_new_pdf(local, normal, direction);
-    acdf_local_fast_sum(local, 0, &point);
+    acdf_local_fast_sum(local, &point);
     if (point.what != ACDF_LOCAL_FAST) return 0.0f;
     share = acdf_local_fast_find(local, &point, tile, square, range);
     return acdf_local_fast_cell_pdf(local, &grid, range, &share);
@@ -297,7 +323,7 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_rows_pdf(const AcdfLocal* local, const 
     if (point.what != ACDF_LOCAL_ROWS) return acdf_local_pdf_at(local, &point, direction);
     return acdf_local_combined_pdf(
         local, &point, direction,
-        acdf_rows_pdf(local->rows_of_normals, local->environment.halved, &grid, &point.rows, &spot, direction));
+        acdf_rows_pdf(local->rows_of_normals, local->environment.halved, &grid, &point.by.rows, &spot, direction));
 }
 /* Pdf per steradian with which acdf_local_sample samples `direction` (unit) for that normal. */
 ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {

@@ -19,9 +19,10 @@ ACDF_FN uint32_t acdf_nearest_bin(const AcdfNormalBins* bins) {
 /* Where the row of the next one that is added to the mixture goes. */
 ACDF_INLINE void acdf_local_tabled_row(const AcdfLocal* local, uint32_t row, AcdfLocalPoint* out) {
     const AcdfLocalTables* tables = local->tables;
-    out->codes[out->mix.count] = acdf_tile_row(acdf_local_words(tables), &tables->tiles, row);
-    ACDF_PREFETCH(out->codes[out->mix.count]);
-    if (tables->parts) out->parts[out->mix.count] = acdf_local_parts(tables, row, local->blend.tiles->tile_count);
+    AcdfTabledRows* of = &out->by.tabled;
+    of->codes[out->mix.count] = acdf_tile_row(acdf_local_words(tables), &tables->tiles, row);
+    ACDF_PREFETCH(of->codes[out->mix.count]);
+    if (tables->parts) of->parts[out->mix.count] = acdf_local_parts(tables, row, local->blend.tiles->tile_count);
 }
 
 /* Finds the rows of a normal within a triangle. Returns 0 where tables have no answer. */
@@ -34,25 +35,23 @@ ACDF_INLINE int acdf_local_table_rows(const AcdfLocal* local, const float normal
         acdf_local_tabled_row(local, facet->row[i], out);
         acdf_mixture_add(&out->mix, &local->blend, facet->row[i], weight[i]);
     }
-    acdf_local_set_facet(normal, facet, scale, out);
+    out->by.tabled.facet = facet;
+    acdf_local_scaled(scale, acdf_local_length(normal), out);
     return 1;
-}
-
-/* No mixture. Rows are left open. */
-ACDF_INLINE void acdf_local_nowhere(AcdfVisibilityMixture* mixture) {
-    mixture->count = 0;
-    mixture->alike = 1;
 }
 
 /* Begins a point: nothing serves it. */
 ACDF_INLINE void acdf_local_nothing(const float normal[3], AcdfLocalPoint* out) {
     int i;
     acdf_local_no_rows(normal, out);
+    out->by.tabled.facet = 0;
     for (i = 0; i < ACDF_MAX_ROWS_MIXED; ++i) {
         out->mix.row[i] = 0;
         out->mix.weight[i] = 0.0;
-        out->codes[i] = 0;
-        out->parts[i] = 0;
+    }
+    for (i = 0; i < ACDF_NORMALS_MIXED; ++i) {
+        out->by.tabled.codes[i] = 0;
+        out->by.tabled.parts[i] = 0;
     }
 }
 
@@ -66,7 +65,7 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
     if (!acdf_local_bins(local, out->surface, &bins)) return 0;
     if (!local->blend.tiles) {
         const AcdfBin* bin = &local->bins[acdf_nearest_bin(&bins)];
-        out->root = bin->root != ACDF_NO_ROOT ? bin->root : local->environment.root;
+        out->by.root = bin->root != ACDF_NO_ROOT ? bin->root : local->environment.root;
         if (bin->root == ACDF_NO_ROOT || bin->share > 0.0f) out->what = ACDF_LOCAL_TREE;
         return 0;
     }
@@ -82,11 +81,13 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
 
 /* Weights bright tiles and mixture together; `visible`: the visible share of each bright tile, null: all. */
 ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, AcdfLocalPoint* out) {
+    const AcdfFacet* facet = out->by.tabled.facet;
+    const AcdfScaledNormal normal = acdf_local_scaled_normal(out);
     uint32_t k;
-    if (out->facet && !visible) out->bright_tiles = acdf_facet_bright_tiles(local, out);
+    if (facet && !visible) out->bright_tiles = acdf_facet_bright_tiles(local, facet, &normal);
     else
         for (k = 0; k < local->bright_tile_count; ++k) {
-            const double weight = acdf_bright_tile_weight(&local->bright_tiles[k], out);
+            const double weight = acdf_bright_tile_weight(&local->bright_tiles[k], &normal);
             out->bright_tiles += visible ? weight * visible[k] : weight;
         }
     out->sum = out->bright_tiles + acdf_mixture_sum(&out->mix);
@@ -100,7 +101,6 @@ ACDF_INLINE void acdf_local_rows_at(const AcdfLocal* local, const float normal[3
     uint32_t row[ACDF_NORMALS_MIXED];
     int i, count = 0;
     acdf_local_no_rows(normal, out);
-    out->visibility.count = 0;
     if (!acdf_local_bins(local, out->surface, &bins)) return;
     for (i = 0; i < bins.count; ++i) {
         const AcdfBin* bin = &local->bins[bins.bin[i]];
@@ -114,65 +114,76 @@ ACDF_INLINE void acdf_local_rows_at(const AcdfLocal* local, const float normal[3
     }
     acdf_local_normal(local, out->surface, out);
     if (!(out->sum > 0.0)) return;
-    acdf_rows_mix(local->rows_of_normals, row, weight, count, &out->rows);
+    acdf_rows_mix(local->rows_of_normals, row, weight, count, &out->by.rows);
     out->what = ACDF_LOCAL_ROWS;
 }
 
 /* Finds what serves a normal. */
 ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
-    out->visible_portals.count = 0;
     if (local->rows_of_normals) {
         acdf_local_rows_at(local, normal, out);
         return;
     }
     if (local->fast.grid) {
-        out->visibility.count = 0;
-        if (acdf_local_begin_fast(local, normal, out)) acdf_local_fast_sum(local, 1, out);
+        if (acdf_local_begin_fast(local, normal, out)) acdf_local_fast_sum(local, out);
         return;
     }
-    acdf_local_nowhere(&out->visibility);
     if (acdf_local_begin(local, normal, out)) acdf_local_sum(local, 0, out);
+}
+
+/* Keeps the visibility cells of a point. */
+ACDF_INLINE void acdf_local_keep_cells(const AcdfVisibilityMixture* cells, AcdfLocalPoint* out) {
+    int i;
+    out->cells = (uint8_t)cells->count;
+    for (i = 0; i < ACDF_MAX_CELLS_MIXED; ++i) {
+        out->by.place.row[i] = i < cells->count ? cells->number[i] : 0;
+        out->by.place.weight[i] = i < cells->count ? cells->weight[i] : 0.0;
+    }
+}
+
+/* Finds what serves a normal at a position of the scene by rows alone, and the visibility cells of that. */
+ACDF_FN void acdf_local_in_cells(const AcdfLocal* local, const float position[3], const float normal[3],
+                                 AcdfVisibilityMixture* cells, AcdfLocalPoint* out) {
+    double visible, of_light[ACDF_MAX_BRIGHT_TILES];
+    float surface[3];
+    int i;
+    cells->count = 0;
+    if (local->fast.grid || local->rows_of_normals) { /* which know no visibility cells */
+        acdf_local_at(local, normal, out);
+        return;
+    }
+    /* First of all: rows of visibility cells are far away, and come while the normal's are found. */
+    acdf_as_given(normal, surface);
+    if (local->blend.tiles)
+        acdf_visibility_at(&local->visibility, local->blend.tiles->tile_count, position, surface, cells);
+    if (!acdf_local_begin(local, normal, out)) return;
+    if (cells->count == 0) {
+        acdf_local_sum(local, 0, out);
+        return;
+    }
+    visible = acdf_mixture_visibility(cells, 0);
+    for (i = 0; i < out->mix.count; ++i) out->mix.weight[i] *= visible;
+    acdf_visibility_of_tiles(cells, local->bright_tile_count, of_light);
+    acdf_local_sum(local, of_light, out);
+    if (out->sum > 0.0) acdf_local_keep_cells(cells, out);
 }
 
 /* Finds what serves a normal at a position of the scene by rows alone, whatever comes through portals. */
 ACDF_FN void acdf_local_at_cells(const AcdfLocal* local, const float position[3], const float normal[3],
                                  AcdfLocalPoint* out) {
-    double visible, of_light[ACDF_MAX_BRIGHT_TILES];
-    int i;
-    acdf_local_nowhere(&out->visibility);
-    out->visible_portals.count = 0;
-    acdf_as_given(normal, out->surface);
-    /* First of all: rows of visibility cells are far away, and come while the normal's are found. */
-    if (local->fast.grid || local->rows_of_normals) { /* which know no visibility cells */
-        acdf_local_at(local, normal, out);
-        return;
-    }
-    if (local->blend.tiles)
-        acdf_visibility_at(&local->visibility, local->blend.tiles->tile_count, position, out->surface,
-                           &out->visibility);
-    if (!acdf_local_begin(local, normal, out)) {
-        out->visibility.count = 0;
-        return;
-    }
-    if (out->visibility.count == 0) {
-        acdf_local_sum(local, 0, out);
-        return;
-    }
-    visible = acdf_mixture_visibility(&out->visibility, 0);
-    for (i = 0; i < out->mix.count; ++i) out->mix.weight[i] *= visible;
-    acdf_visibility_of_tiles(&out->visibility, local->bright_tile_count, of_light);
-    acdf_local_sum(local, of_light, out);
-    if (!(out->sum > 0.0)) out->visibility.count = 0;
+    AcdfVisibilityMixture cells;
+    acdf_local_in_cells(local, position, normal, &cells, out);
 }
 
 /* Finds what serves a normal at a position of the scene. Outside of all cells, and where there are no visibility
  * cells, that is what serves the normal. */
 ACDF_FN void acdf_local_at_position(const AcdfLocal* local, const float position[3], const float normal[3],
                                     AcdfLocalPoint* out) {
-    acdf_local_at_cells(local, position, normal, out);
-    if (local->portals.header && out->visibility.count > 0)
-        acdf_visible_portals_at(&local->portals, &local->visibility, &out->visibility, position, out->surface,
-                                &out->visible_portals);
+    AcdfVisibilityMixture cells;
+    acdf_local_in_cells(local, position, normal, &cells, out);
+    if (local->portals.header && out->cells > 0)
+        out->portals = (uint8_t)acdf_visible_portals_at(&local->portals, &local->visibility, &cells, position,
+                                                        out->surface, &out->by.place.portals);
 }
 
 /* Whether u0 in [0, 1] samples from the mixture, not a bright tile. */

@@ -33,21 +33,31 @@ typedef struct AcdfPortalTable {
 #define ACDF_STEEPEST 0x1p12
 #define ACDF_THINNEST 0x1p-12
 
+/* A portal as a position sees it, and those of its pieces that have been weighed. */
 typedef struct AcdfVisiblePortal {
     double low[2], high[2]; /* tangents of its sides, along the axes of its map */
-    double weight;          /* of all pieces */
+    double weight;          /* of these pieces */
     uint32_t map;
     float piece[ACDF_MAX_PORTAL_PIECES][ACDF_MAX_PORTAL_PIECES];   /* weights, column by column */
     float density[ACDF_MAX_PORTAL_PIECES][ACDF_MAX_PORTAL_PIECES]; /* of weight, for 1 in the map */
 } AcdfVisiblePortal;
 
+/* What a shading point keeps of portals: pieces are weighed again when one is sampled, or a direction meets it. */
 typedef struct AcdfVisiblePortals {
-    AcdfPortalTable table;
-    int count;     /* 0: only the row is sampled, and the rest is not set */
-    double of_row; /* the share that the row samples, in (0, 1) */
-    double weight; /* of all visible_portals, > 0 */
-    AcdfVisiblePortal visible_portal[ACDF_MAX_PORTALS];
+    double of_row;                   /* the share that the row samples, in (0, 1) */
+    double weight[ACDF_MAX_PORTALS]; /* of each portal of the file; 0: it is not seen */
+    float position[3];
 } AcdfVisiblePortals;
+
+/* Where portals are seen from. */
+typedef struct AcdfPortalEye {
+    const AcdfPortalTable* table;
+    const AcdfVisibilityMixture* mixture; /* of the cells there; null: nothing hides a portal */
+    const uint8_t* row[ACDF_MAX_CELLS_MIXED];
+    double x[6];      /* position and unit normal among the cells */
+    uint32_t weighed; /* the portal whose pieces are all weighed in `seen`; ACDF_MAX_PORTALS: none */
+    AcdfVisiblePortal seen;
+} AcdfPortalEye;
 
 /* The mixture of a tangent on an axis of a map of `size` cells, and back. */
 ACDF_FN double acdf_bend(double tangent, double size) {
@@ -68,14 +78,28 @@ ACDF_FN uint32_t acdf_map_cell(double at, uint32_t size) {
     return cell < size ? cell : size - 1;
 }
 
-/* The light of a map below and left of a mixture, linear within cells. */
+/* A place on an axis of a map: a cell, and where it lies in that. */
+typedef struct AcdfMapPlace {
+    uint32_t cell;
+    double part;
+} AcdfMapPlace;
+
+ACDF_INLINE AcdfMapPlace acdf_map_place(double at, uint32_t size) {
+    AcdfMapPlace out;
+    out.cell = acdf_map_cell(at, size);
+    out.part = at - (double)out.cell;
+    return out;
+}
+
+/* The light of a map below and left of places, linear within cells. */
+ACDF_INLINE double acdf_map_below_places(const uint32_t* sums, uint32_t size, AcdfMapPlace x, AcdfMapPlace y) {
+    const uint32_t* at = sums + (size_t)y.cell * (size + 1) + x.cell;
+    const double lower = (double)at[0] + x.part * ((double)at[1] - (double)at[0]);
+    const double upper = (double)at[size + 1] + x.part * ((double)at[size + 2] - (double)at[size + 1]);
+    return lower + y.part * (upper - lower);
+}
 ACDF_FN double acdf_map_sum(const uint32_t* sums, uint32_t size, double x, double y) {
-    const uint32_t column = acdf_map_cell(x, size), row = acdf_map_cell(y, size);
-    const uint32_t* at = sums + (size_t)row * (size + 1) + column;
-    const double s = x - (double)column, t = y - (double)row;
-    const double lower = (double)at[0] + s * ((double)at[1] - (double)at[0]);
-    const double upper = (double)at[size + 1] + s * ((double)at[size + 2] - (double)at[size + 1]);
-    return lower + t * (upper - lower);
+    return acdf_map_below_places(sums, size, acdf_map_place(x, size), acdf_map_place(y, size));
 }
 
 /* The light of a cell, exactly. */
@@ -89,34 +113,39 @@ ACDF_FN const uint32_t* acdf_portal_map_sums(const AcdfPortalTable* table, uint3
     return table->sums + map * side * side;
 }
 
-/* The bytes of a cell of visibility. */
-ACDF_FN const uint8_t* acdf_portal_row(const AcdfPortalTable* table, const AcdfVisibilityTable* visibility,
-                                       const uint8_t* row) {
+/* The bytes of a row of visibility cells. */
+ACDF_FN const uint8_t* acdf_portal_row(const AcdfPortalTable* table, uint32_t number) {
     const AcdfPortals* header = table->header;
-    const size_t of_cell = (size_t)1 + visibility->bright_tile_count + visibility->header->column_count;
-    const size_t own = (size_t)1 + (size_t)header->portal_count * header->pieces * header->pieces;
-    return table->rows + (size_t)(row - visibility->rows) / of_cell * own;
+    return table->rows + (size_t)number * (1 + header->portal_count * header->pieces * header->pieces);
 }
 
-/* Where a portal is seen from a point; 0 where it is not, or too thin. */
-ACDF_FN int acdf_portal_bounds(const AcdfPortalTable* table, const AcdfPortal* portal, const double from[3],
-                               AcdfVisiblePortal* out) {
+/* Where a portal is seen from a point in front of it; 0 where that lies behind. */
+ACDF_FN int acdf_portal_sides(const AcdfPortalTable* table, const AcdfPortal* portal, const double from[3],
+                              AcdfVisiblePortal* out) {
     const AcdfPortalMap* map = &table->maps[portal->map];
-    const double size = (double)table->header->size;
     double corner[3], distance;
     int k;
     for (k = 0; k < 3; ++k) corner[k] = (double)portal->corner[k] - from[k];
     distance = acdf_dot3(map->axis[2], corner);
-    if (!(distance > 0.0)) return 0;
     for (k = 0; k < 2; ++k) {
         const double low = acdf_dot3(map->axis[k], corner), high = low + (double)portal->sides[k];
         out->low[k] = low / distance;
         out->high[k] = high / distance;
+    }
+    out->map = portal->map;
+    return distance > 0.0;
+}
+
+/* The same; 0 also where it is too thin. */
+ACDF_FN int acdf_portal_bounds(const AcdfPortalTable* table, const AcdfPortal* portal, const double from[3],
+                               AcdfVisiblePortal* out) {
+    const double size = (double)table->header->size;
+    int k;
+    if (!acdf_portal_sides(table, portal, from, out)) return 0;
+    for (k = 0; k < 2; ++k)
         if (!(out->low[k] > -ACDF_STEEPEST && out->high[k] < ACDF_STEEPEST &&
               acdf_bend(out->high[k], size) - acdf_bend(out->low[k], size) > ACDF_THINNEST))
             return 0;
-    }
-    out->map = portal->map;
     return 1;
 }
 
@@ -127,49 +156,66 @@ ACDF_FN double acdf_piece_side(const AcdfVisiblePortal* visible_portal, int axis
            (visible_portal->high[axis] - visible_portal->low[axis]) * ((double)i / (double)pieces);
 }
 
-/* What the cells of a mixture see of each piece of a portal, whose bytes begin at `first` of each row. */
-ACDF_FN void acdf_portal_visibility(const AcdfVisibilityMixture* mixture, const uint8_t** rows, uint32_t first,
-                                    uint32_t count, double* out) {
-    uint32_t c;
+/* What the cells see of a piece of a portal. */
+ACDF_FN double acdf_portal_visibility(const AcdfPortalEye* eye, uint32_t portal, uint32_t piece) {
+    const AcdfPortals* header = eye->table->header;
+    const uint32_t index = 1 + portal * header->pieces * header->pieces + piece;
+    double sum = 0.0;
     int i;
-    for (c = 0; c < count; ++c) out[c] = 0.0;
-    for (i = 0; i < mixture->count; ++i)
-        for (c = 0; c < count; ++c) out[c] += mixture->weight[i] * acdf_visibility_of_code(rows[i][first + c]);
+    if (!eye->mixture) return 1.0;
+    for (i = 0; i < eye->mixture->count; ++i)
+        sum += eye->mixture->weight[i] * acdf_visibility_of_code(eye->row[i][index]);
+    return sum;
 }
 
 /* The light between interpolated sums is less than this part of the largest of them off: no more may be none. */
 #define ACDF_LEAST_LIGHT 0x1p-48
 
-/* Weighs the pieces of a visible_portal: its light, times the mean of the cosines at the corners, times what is
- * visible. */
-ACDF_FN void acdf_visible_portal_weigh(const AcdfPortalTable* table, const double normal[3], const double* visible,
-                                       AcdfVisiblePortal* visible_portal) {
+/* Pieces of a portal, from `first` up to `end` along either axis. */
+typedef struct AcdfPortalPieces {
+    uint32_t first[2], end[2];
+} AcdfPortalPieces;
+
+ACDF_FN AcdfPortalPieces acdf_all_pieces(const AcdfPortalTable* table) {
+    AcdfPortalPieces out;
+    out.first[0] = out.first[1] = 0;
+    out.end[0] = out.end[1] = table->header->pieces;
+    return out;
+}
+
+/* Weighs pieces of a portal whose sides are known: its light, times the mean of the cosines at the corners, times
+ * what is visible. */
+ACDF_FN void acdf_portal_weigh(const AcdfPortalEye* eye, uint32_t portal, const AcdfPortalPieces* some,
+                               AcdfVisiblePortal* visible_portal) {
+    const AcdfPortalTable* table = eye->table;
     const AcdfPortalMap* map = &table->maps[visible_portal->map];
     const uint32_t* sums = acdf_portal_map_sums(table, visible_portal->map);
     const uint32_t size = table->header->size, pieces = table->header->pieces;
     double n[3], below[2][ACDF_MAX_PORTAL_PIECES + 1], cosine[2][ACDF_MAX_PORTAL_PIECES + 1];
-    double side[ACDF_MAX_PORTAL_PIECES + 1], bent[ACDF_MAX_PORTAL_PIECES + 1];
+    double side[ACDF_MAX_PORTAL_PIECES + 1];
+    AcdfMapPlace place[ACDF_MAX_PORTAL_PIECES + 1];
     uint32_t i, j, k;
     visible_portal->weight = 0.0;
-    for (k = 0; k < 3; ++k) n[k] = acdf_dot3(map->axis[k], normal);
-    for (j = 0; j <= pieces; ++j) {
+    for (k = 0; k < 3; ++k) n[k] = acdf_dot3(map->axis[k], eye->x + 3);
+    for (j = some->first[1]; j <= some->end[1]; ++j) {
         side[j] = acdf_piece_side(visible_portal, 1, j, pieces);
-        bent[j] = acdf_bend(side[j], (double)size);
+        place[j] = acdf_map_place(acdf_bend(side[j], (double)size), size);
     }
-    for (i = 0; i <= pieces; ++i) { /* column by column of corners: those before, and these */
-        const double x = acdf_piece_side(visible_portal, 0, i, pieces), at = acdf_bend(x, (double)size);
+    for (i = some->first[0]; i <= some->end[0]; ++i) { /* column by column of corners: those before, and these */
+        const double x = acdf_piece_side(visible_portal, 0, i, pieces);
+        const AcdfMapPlace at = acdf_map_place(acdf_bend(x, (double)size), size);
         const int now = (int)(i & 1u), before = 1 - now;
-        for (j = 0; j <= pieces; ++j) {
+        for (j = some->first[1]; j <= some->end[1]; ++j) {
             const double y = side[j];
             const double height = n[0] * x + n[1] * y + n[2];
-            below[now][j] = acdf_map_sum(sums, size, at, bent[j]);
-            cosine[now][j] = height > 0.0 ? height / sqrt(1.0 + x * x + y * y) : 0.0;
+            below[now][j] = acdf_map_below_places(sums, size, at, place[j]);
+            cosine[now][j] = (height > 0.0 ? height : 0.0) / sqrt(1.0 + x * x + y * y);
         }
-        for (j = 0; i > 0 && j < pieces; ++j) {
+        for (j = some->first[1]; i > some->first[0] && j < some->end[1]; ++j) {
             const double light = (below[now][j + 1] - below[now][j]) - (below[before][j + 1] - below[before][j]);
             const double density =
                 (cosine[now][j + 1] + cosine[now][j] + (cosine[before][j + 1] + cosine[before][j])) *
-                (0.25 * (double)map->unit) * visible[(i - 1) * pieces + j];
+                (0.25 * (double)map->unit) * acdf_portal_visibility(eye, portal, (i - 1) * pieces + j);
             const float weight = (float)(light > ACDF_LEAST_LIGHT * below[now][j + 1] ? density * light : 0.0);
             visible_portal->piece[i - 1][j] = weight;
             visible_portal->density[i - 1][j] = (float)(weight > 0.0f ? density : 0.0);
@@ -178,33 +224,66 @@ ACDF_FN void acdf_visible_portal_weigh(const AcdfPortalTable* table, const doubl
     }
 }
 
-/* The visible_portals of a mixture, which lies in cells, and a normal. */
-ACDF_FN void acdf_visible_portals_at(const AcdfPortalTable* table, const AcdfVisibilityTable* visibility,
-                                     const AcdfVisibilityMixture* mixture, const float position[3],
-                                     const float normal[3], AcdfVisiblePortals* out) {
-    const uint32_t pieces = table->header->pieces * table->header->pieces;
-    const uint8_t* rows[ACDF_MAX_CELLS_MIXED];
-    double x[6], visible[ACDF_MAX_PORTAL_PIECES * ACDF_MAX_PORTAL_PIECES];
-    uint32_t k;
+/* Looks from a position and a normal whose cells a mixture has. Returns 0 outside of all cells. */
+ACDF_FN int acdf_portal_eye(const AcdfPortalTable* table, const AcdfVisibilityTable* visibility,
+                            const AcdfVisibilityMixture* mixture, const float position[3], const float normal[3],
+                            AcdfPortalEye* out) {
     int i;
-    out->count = 0;
-    out->of_row = out->weight = 0.0;
-    for (i = 0; i < mixture->count; ++i) {
-        rows[i] = acdf_portal_row(table, visibility, mixture->row[i]);
-        out->of_row += mixture->weight[i] * ((double)rows[i][0] + 1.0) * (1.0 / 256.0);
-    }
-    if (!(out->of_row < 1.0) || !acdf_visibility_coordinates(visibility, position, normal, x)) return;
-    out->table = *table;
+    out->table = table;
+    out->mixture = mixture;
+    out->weighed = ACDF_MAX_PORTALS;
+    for (i = 0; i < mixture->count; ++i) out->row[i] = acdf_portal_row(table, mixture->number[i]);
+    return acdf_visibility_coordinates(visibility, position, normal, out->x);
+}
+
+/* Weighs all pieces of a portal whose sides are known in `seen`. */
+ACDF_FN void acdf_portal_weigh_all(AcdfPortalEye* eye, uint32_t portal) {
+    const AcdfPortalPieces all = acdf_all_pieces(eye->table);
+    acdf_portal_weigh(eye, portal, &all, &eye->seen);
+    eye->weighed = portal;
+}
+
+/* The weight of a portal; 0 where it is not seen. */
+ACDF_FN double acdf_portal_weight(AcdfPortalEye* eye, uint32_t portal) {
+    if (!acdf_portal_bounds(eye->table, &eye->table->portals[portal], eye->x, &eye->seen)) return 0.0;
+    acdf_portal_weigh_all(eye, portal);
+    return eye->seen.weight > 0.0 && acdf_is_finite(eye->seen.weight) ? eye->seen.weight : 0.0;
+}
+
+/* The share of the row of a mixture. */
+ACDF_FN double acdf_portals_of_row(const AcdfPortalEye* eye) {
+    double sum = 0.0;
+    int i;
+    for (i = 0; i < eye->mixture->count; ++i)
+        sum += eye->mixture->weight[i] * ((double)eye->row[i][0] + 1.0) * (1.0 / 256.0);
+    return sum;
+}
+
+/* The sum of the weights of all portals. */
+ACDF_FN double acdf_visible_portals_weight(const AcdfPortalTable* table,
+                                           const AcdfVisiblePortals* visible_portals) {
+    double sum = 0.0;
+    uint32_t k;
+    for (k = 0; k < table->header->portal_count; ++k) sum += visible_portals->weight[k];
+    return sum;
+}
+
+/* The portals that a mixture, which lies in cells, and a normal see. Returns how many; where it is none, only the
+ * row is sampled. */
+ACDF_FN uint32_t acdf_visible_portals_at(const AcdfPortalTable* table, const AcdfVisibilityTable* visibility,
+                                         const AcdfVisibilityMixture* mixture, const float position[3],
+                                         const float normal[3], AcdfVisiblePortals* out) {
+    AcdfPortalEye eye;
+    uint32_t k, count = 0;
+    if (!acdf_portal_eye(table, visibility, mixture, position, normal, &eye)) return 0;
+    out->of_row = acdf_portals_of_row(&eye);
+    if (!(out->of_row < 1.0)) return 0;
+    for (k = 0; k < 3; ++k) out->position[k] = position[k];
     for (k = 0; k < table->header->portal_count; ++k) {
-        AcdfVisiblePortal* visible_portal = &out->visible_portal[out->count];
-        if (!acdf_portal_bounds(table, &table->portals[k], x, visible_portal)) continue;
-        acdf_portal_visibility(mixture, rows, 1 + k * pieces, pieces, visible);
-        acdf_visible_portal_weigh(table, x + 3, visible, visible_portal);
-        if (!(visible_portal->weight > 0.0 && acdf_is_finite(visible_portal->weight))) continue;
-        out->weight += visible_portal->weight;
-        ++out->count;
+        out->weight[k] = acdf_portal_weight(&eye, k);
+        count += (uint32_t)(out->weight[k] > 0.0);
     }
-    if (!acdf_is_finite(out->weight)) out->count = 0;
+    return acdf_is_finite(acdf_visible_portals_weight(table, out)) ? count : 0;
 }
 
 /* Of the pdfs of visible_portals and row together. */
@@ -215,45 +294,83 @@ ACDF_FN float acdf_visible_portals_mixed(const AcdfVisiblePortals* visible_porta
     return (float)acdf_clamp(pdf, 1.17549435e-38, 3.402823466e38);
 }
 
-/* The weight per steradian of a unit direction in a visible_portal. */
-ACDF_FN double acdf_visible_portal_pdf(const AcdfPortalTable* table, const AcdfVisiblePortal* visible_portal,
-                                       const double d[3]) {
+/* Where a unit direction meets a visible_portal: its piece, and the weight per steradian there for a density of 1.
+ */
+typedef struct AcdfPortalSpot {
+    uint32_t piece[2];
+    double light, z, slope;
+} AcdfPortalSpot;
+
+/* Returns 0 where it does not. */
+ACDF_FN int acdf_visible_portal_find(const AcdfPortalTable* table, const AcdfVisiblePortal* visible_portal,
+                                     const double d[3], AcdfPortalSpot* out) {
     const AcdfPortalMap* map = &table->maps[visible_portal->map];
     const uint32_t size = table->header->size, pieces = table->header->pieces;
     const double z = acdf_dot3(map->axis[2], d);
-    double along[2], slope;
-    uint32_t cell[2], piece[2];
+    double along[2];
+    uint32_t cell[2];
     int k;
-    if (!(z > 0.0)) return 0.0;
+    if (!(z > 0.0)) return 0;
     for (k = 0; k < 2; ++k) {
         double t;
         along[k] = acdf_dot3(map->axis[k], d);
         t = along[k] / z;
-        if (!(t >= visible_portal->low[k] && t <= visible_portal->high[k])) return 0.0;
-        piece[k] = acdf_map_cell((t - visible_portal->low[k]) / (visible_portal->high[k] - visible_portal->low[k]) *
-                                     (double)pieces,
-                                 pieces);
+        if (!(t >= visible_portal->low[k] && t <= visible_portal->high[k])) return 0;
+        out->piece[k] = acdf_map_cell((t - visible_portal->low[k]) /
+                                          (visible_portal->high[k] - visible_portal->low[k]) * (double)pieces,
+                                      pieces);
         cell[k] = acdf_map_cell(acdf_bend(t, (double)size), size);
     }
-    slope = (z + fabs(along[0])) * (z + fabs(along[1]));
-    return (double)visible_portal->density[piece[0]][piece[1]] *
-           (double)acdf_map_light(acdf_portal_map_sums(table, visible_portal->map), size, cell[0], cell[1]) *
-           (0.25 * (double)size * (double)size) * z / (slope * slope);
+    out->light = (double)acdf_map_light(acdf_portal_map_sums(table, visible_portal->map), size, cell[0], cell[1]);
+    out->z = z;
+    out->slope = (z + fabs(along[0])) * (z + fabs(along[1]));
+    return 1;
+}
+
+/* The weight per steradian of a direction in a visible_portal whose piece there has been weighed. */
+ACDF_FN double acdf_portal_spot_pdf(const AcdfPortalTable* table, const AcdfVisiblePortal* visible_portal,
+                                    const AcdfPortalSpot* spot) {
+    const double size = (double)table->header->size;
+    return (double)visible_portal->density[spot->piece[0]][spot->piece[1]] * spot->light * (0.25 * size * size) *
+           spot->z / (spot->slope * spot->slope);
+}
+
+/* The weight per steradian of a unit direction in a portal that is seen. */
+ACDF_FN double acdf_portal_pdf(const AcdfPortalEye* eye, uint32_t portal, const double d[3]) {
+    AcdfVisiblePortal seen;
+    AcdfPortalPieces one;
+    AcdfPortalSpot spot;
+    int k;
+    if (eye->weighed == portal)
+        return acdf_visible_portal_find(eye->table, &eye->seen, d, &spot)
+                   ? acdf_portal_spot_pdf(eye->table, &eye->seen, &spot)
+                   : 0.0;
+    if (!acdf_portal_sides(eye->table, &eye->table->portals[portal], eye->x, &seen) ||
+        !acdf_visible_portal_find(eye->table, &seen, d, &spot))
+        return 0.0;
+    for (k = 0; k < 2; ++k) {
+        one.first[k] = spot.piece[k];
+        one.end[k] = spot.piece[k] + 1;
+    }
+    acdf_portal_weigh(eye, portal, &one, &seen);
+    return acdf_portal_spot_pdf(eye->table, &seen, &spot);
 }
 
 /* Pdf per steradian of row and visible_portals together; `row`: that of the row. */
-ACDF_OUTLINE_ON_CPU float acdf_visible_portals_pdf(const AcdfVisiblePortals* visible_portals,
+ACDF_OUTLINE_ON_CPU float acdf_visible_portals_pdf(const AcdfPortalEye* eye,
+                                                   const AcdfVisiblePortals* visible_portals,
                                                    const float direction[3], float row) {
     double d[3], size, sum = 0.0;
     float given[3];
-    int i;
+    uint32_t k;
     acdf_as_given(direction, given);
-    for (i = 0; i < 3; ++i) d[i] = given[i];
+    for (k = 0; k < 3; ++k) d[k] = given[k];
     size = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     if (!(size > 0.9995 && size < 1.0005)) return 0.0f;
-    for (i = 0; i < visible_portals->count; ++i)
-        sum += acdf_visible_portal_pdf(&visible_portals->table, &visible_portals->visible_portal[i], d);
-    return acdf_visible_portals_mixed(visible_portals, sum / visible_portals->weight, row);
+    for (k = 0; k < eye->table->header->portal_count; ++k)
+        if (visible_portals->weight[k] > 0.0) sum += acdf_portal_pdf(eye, k, d);
+    return acdf_visible_portals_mixed(visible_portals,
+                                      sum / acdf_visible_portals_weight(eye->table, visible_portals), row);
 }
 
 /* Whether u[0] samples through a visible_portal, not by the row; what is left of it takes its mixture. */
@@ -386,20 +503,22 @@ ACDF_FN void acdf_piece_sample(const AcdfPortalTable* table, const AcdfVisiblePo
 }
 
 /* Samples a direction through a visible_portal: it, a column and a row of its pieces, then in the piece. */
-ACDF_FN void acdf_visible_portals_sample(const AcdfVisiblePortals* visible_portals, double* u, float direction[3]) {
-    const uint32_t pieces = visible_portals->table.header->pieces;
-    const AcdfVisiblePortal* visible_portal;
-    double weight[ACDF_MAX_PORTALS];
+ACDF_FN void acdf_visible_portals_sample(AcdfPortalEye* eye, const AcdfVisiblePortals* visible_portals, double* u,
+                                         float direction[3]) {
+    const AcdfPortalTable* table = eye->table;
+    const uint32_t portal = acdf_sample_part(visible_portals->weight, table->header->portal_count, &u[0]);
+    const uint32_t pieces = table->header->pieces;
+    const AcdfVisiblePortal* seen = &eye->seen;
+    double weight[ACDF_MAX_PORTAL_PIECES];
     uint32_t piece[2], i, j;
-    for (i = 0; i < (uint32_t)visible_portals->count; ++i) weight[i] = visible_portals->visible_portal[i].weight;
-    visible_portal =
-        &visible_portals->visible_portal[acdf_sample_part(weight, (uint32_t)visible_portals->count, &u[0])];
+    acdf_portal_sides(table, &table->portals[portal], eye->x, &eye->seen);
+    acdf_portal_weigh_all(eye, portal);
     for (i = 0; i < pieces; ++i)
-        for (weight[i] = 0.0, j = 0; j < pieces; ++j) weight[i] += (double)visible_portal->piece[i][j];
+        for (weight[i] = 0.0, j = 0; j < pieces; ++j) weight[i] += (double)seen->piece[i][j];
     piece[0] = acdf_sample_part(weight, pieces, &u[0]);
-    for (j = 0; j < pieces; ++j) weight[j] = (double)visible_portal->piece[piece[0]][j];
+    for (j = 0; j < pieces; ++j) weight[j] = (double)seen->piece[piece[0]][j];
     piece[1] = acdf_sample_part(weight, pieces, &u[1]);
-    acdf_piece_sample(&visible_portals->table, visible_portal, piece, u, direction);
+    acdf_piece_sample(table, seen, piece, u, direction);
 }
 
 #ifdef __cplusplus

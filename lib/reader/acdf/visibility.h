@@ -28,6 +28,7 @@ typedef struct AcdfVisibilityTable {
 
 /* The rows of cells around a position, and their weights, whose sum is 1. None: there are no visibility cells. */
 typedef struct AcdfVisibilityMixture {
+    uint32_t number[ACDF_MAX_CELLS_MIXED]; /* of the row */
     const uint8_t* row[ACDF_MAX_CELLS_MIXED];
     const uint16_t* columns[ACDF_MAX_CELLS_MIXED]; /* of the row */
     double weight[ACDF_MAX_CELLS_MIXED];
@@ -42,6 +43,28 @@ ACDF_FN double acdf_visibility_of_code(uint8_t code) {
     double out;
     memcpy(&out, &bits, sizeof out);
     return out;
+}
+
+/* The bytes of a row, and where those of one begin. */
+ACDF_FN size_t acdf_visibility_width(const AcdfVisibilityTable* table) {
+    return (size_t)1 + table->bright_tile_count + table->header->column_count;
+}
+ACDF_FN const uint8_t* acdf_visibility_row(const AcdfVisibilityTable* table, uint32_t number) {
+    return table->rows + number * acdf_visibility_width(table);
+}
+
+/* Finds the rows of a mixture by their numbers. */
+ACDF_INLINE void acdf_visibility_open(const AcdfVisibilityTable* table, uint32_t tile_count,
+                                      AcdfVisibilityMixture* mixture) {
+    const size_t width = acdf_visibility_width(table);
+    int i;
+    mixture->alike = 1;
+    for (i = 0; i < mixture->count; ++i) {
+        const uint32_t set = table->set_of_row ? table->set_of_row[mixture->number[i]] : 0;
+        mixture->row[i] = table->rows + mixture->number[i] * width;
+        mixture->columns[i] = table->columns + (size_t)set * (tile_count - 1);
+        mixture->alike &= mixture->columns[i] == mixture->columns[0];
+    }
 }
 
 /* Number `index` of a row: 0 is the mixture, 1 + k bright tile k. */
@@ -87,18 +110,17 @@ ACDF_FN int acdf_visibility_coordinates(const AcdfVisibilityTable* table, const 
  * border is left out. */
 ACDF_FN void acdf_visibility_at(const AcdfVisibilityTable* table, uint32_t tile_count, const float position[3],
                                 const float normal[3], AcdfVisibilityMixture* out) {
-    uint32_t node[ACDF_MAX_CELLS_MIXED];
-    size_t width;
+    uint32_t* const node = out->number;
     double x[6];
     int i;
     out->count = 0;
     if (!table->header || !acdf_visibility_coordinates(table, position, normal, x)) return;
-    width = (size_t)1 + table->bright_tile_count + table->header->column_count;
     node[0] = table->header->split_count > 0 ? 0 : ACDF_VISIBILITY_ROW;
     out->weight[0] = 1.0;
     out->count = 1;
     for (i = 0; i < out->count; ++i) {
         uint32_t now = node[i];
+        const uint8_t* row;
         while (!(now & ACDF_VISIBILITY_ROW)) {
             const AcdfVisibilitySplit* split = &table->splits[now];
             const double above = x[split->lower & 7u] - (double)split->position, blend = (double)split->blend;
@@ -116,16 +138,11 @@ ACDF_FN void acdf_visibility_at(const AcdfVisibilityTable* table, uint32_t tile_
             }
         }
         node[i] = now & ~ACDF_VISIBILITY_ROW;
-        out->row[i] = table->rows + (size_t)node[i] * width;
-        ACDF_PREFETCH(out->row[i]);
-        ACDF_PREFETCH(out->row[i] + width / 2);
+        row = acdf_visibility_row(table, node[i]);
+        ACDF_PREFETCH(row);
+        ACDF_PREFETCH(row + acdf_visibility_width(table) / 2);
     }
-    out->alike = 1;
-    for (i = 0; i < out->count; ++i) {
-        out->columns[i] =
-            table->columns + (table->set_of_row ? (size_t)table->set_of_row[node[i]] * (tile_count - 1) : 0);
-        out->alike &= out->columns[i] == out->columns[0];
-    }
+    acdf_visibility_open(table, tile_count, out);
 }
 
 /* The odds of a split, out of 65535; below 0 where none of the cells has a column for it. */

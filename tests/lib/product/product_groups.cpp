@@ -70,15 +70,16 @@ TEST(FastCut, MassesAreWhatPdfsFind) {
             acdf_local_at(&light, random_normal(rng).v, &point);
             if (point.what != ACDF_LOCAL_FAST || point.mix.count == 0) continue;
             std::int32_t masses[ACDF_FAST_CUT_GROUPS], tiles[ACDF_FAST_GROUP];
-            acdf_fast_group_masses(&light.fast, &point.fast, masses);
+            acdf_fast_group_masses(&light.fast, &point.by.fast.mix, masses);
             const std::uint32_t groups = acdf_fast_group_count(light.blend.tiles->tile_count);
             for (std::uint32_t g = groups; g < light.fast.ends; ++g) ASSERT_EQ(masses[g], 0);
             for (std::uint32_t g = 0; g < groups; ++g) {
-                const AcdfFastGroup group = acdf_fast_find_group(&point.fast, g);
+                const AcdfFastGroup group = acdf_fast_find_group(&point.by.fast.mix, g);
                 ASSERT_EQ(masses[g], group.mass) << seed;
-                acdf_fast_tile_masses(&point.fast, &group, ACDF_FAST_GROUP * g, tiles);
+                acdf_fast_tile_masses(&point.by.fast.mix, &group, ACDF_FAST_GROUP * g, tiles);
                 for (std::uint32_t t = 0; t < ACDF_FAST_GROUP; ++t)
-                    ASSERT_EQ(tiles[t], acdf_fast_find_tile(&point.fast, &group, ACDF_FAST_GROUP * g, t)) << seed;
+                    ASSERT_EQ(tiles[t], acdf_fast_find_tile(&point.by.fast.mix, &group, ACDF_FAST_GROUP * g, t))
+                        << seed;
                 given += masses[g] > 0;
             }
         }

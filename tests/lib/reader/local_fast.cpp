@@ -261,10 +261,10 @@ TEST(FastShape, StrataStayStrata) {
     double before = -1.0;
     for (int i = 0; i <= 100000; ++i) { // tiles are sampled in their order within a group, groups in theirs
         double u[2] = {0.0, 0.5};
-        const double whole = 32767.0 * point.fast.whole;
+        const double whole = 32767.0 * point.by.fast.mix.whole;
         AcdfFastShare share;
-        const std::uint32_t tile =
-            acdf_fast_sample_tile(&view.data().fast, &point.fast, acdf_fast_scaled(i / 100000.0, whole), u, &share);
+        const std::uint32_t tile = acdf_fast_sample_tile(&view.data().fast, &point.by.fast.mix,
+                                                         acdf_fast_scaled(i / 100000.0, whole), u, &share);
         ASSERT_GE(double(tile / ACDF_FAST_GROUP), before);
         ASSERT_GE(u[0], 0.0);
         ASSERT_LE(u[0], 1.0);

@@ -30,12 +30,12 @@ TEST(Portals, SamplesHaveThePdfThatIsFoundForThem) {
         for (const auto& n : kNormalsInside)
             for (const auto& x : kInside) {
                 const AcdfLocalPoint point = loaded.view().at(x, n);
-                seen += point.visible_portals.count;
+                seen += point.portals;
                 for (int i = 0; i < 300; ++i) {
                     const double u0 = double(random() >> 11) * 0x1p-53, u1 = double(random() >> 11) * 0x1p-53;
                     const acdf::DirectionSample s = loaded.view().sample(point, u0, u1);
                     EXPECT_GT(s.pdf, 0.0f);
-                    if (point.visible_portals.count > 0) {
+                    if (point.portals > 0) {
                         EXPECT_EQ(loaded.view().pdf(point, s.direction), s.pdf);
                     }
                 }
@@ -99,7 +99,7 @@ TEST(Portals, DirectionsFallWhereThePdfSays) {
     const struct { int position, normal; } cases[] = {{0, 0}, {1, 1}, {3, 3}, {6, 0}};
     for (const auto& c : cases) {
         const AcdfLocalPoint point = loaded.view().at(kInside[c.position], kNormalsInside[c.normal]);
-        ASSERT_GT(point.visible_portals.count, 0) << c.position;
+        ASSERT_GT(point.portals, 0) << c.position;
         const Histogram expected = expected_of(loaded.view(), point);
         double whole = 0.0;
         for (const double p : expected.of) whole += p;
@@ -154,9 +154,9 @@ TEST(Portals, NothingIsSampledInCellsWithoutLight) {
     for (const auto& n : kNormalsInside)
         for (const auto& x : kInside) {
             const AcdfLocalPoint point = loaded.view().at(x, n);
-            if (point.visible_portals.count == 0) continue;
+            if (point.portals == 0) continue;
             ++seen;
-            const double row = point.visible_portals.of_row;
+            const double row = point.by.place.portals.of_row;
             for (double u0 : {row, row + 0x1p-53, 0.5 + 0.5 * row, 0.75 + 0.25 * row, 1.0 - 0x1p-24, 1.0})
                 for (double u1 : {0.0, 0x1p-30, 0.25, 0.5, 0.75, 1.0 - 0x1p-53, 1.0}) {
                     const acdf::DirectionSample s = loaded.view().sample(point, u0, u1);
@@ -178,11 +178,11 @@ TEST(Portals, RoundingIsNoLight) {
     const LoadedLocal loaded(spec);
     for (int i = 0; i < 100; ++i) {
         const float x[] = {0, -0.002f * static_cast<float>(i), 1};
-        EXPECT_EQ(loaded.view().at(x, kNormalsInside[0]).visible_portals.count, 0) << i;
+        EXPECT_EQ(loaded.view().at(x, kNormalsInside[0]).portals, 0) << i;
     }
     spec.portals->maps[0].light[10] = 1;
     const float x[] = {0, 0, 1};
-    EXPECT_EQ(LoadedLocal(spec).view().at(x, kNormalsInside[0]).visible_portals.count, 1);
+    EXPECT_EQ(LoadedLocal(spec).view().at(x, kNormalsInside[0]).portals, 1);
 }
 
 /// A position that samples by its row alone, one behind a wall, one outside, and a normal alone see no portals.
@@ -193,7 +193,7 @@ TEST(Portals, PositionsWithoutAPortalSampleTheirRow) {
     } cases[] = {{{2, 1.5f, 1}, {0, 0, 1}}, {{0, 0, 1}, {-1, -1, 0}}, {{9, 0, 1}, {1, 0, 0}}};
     for (const auto& c : cases) {
         const AcdfLocalPoint point = loaded.view().at(c.x, c.n), row = rows.view().at(c.x, c.n);
-        EXPECT_EQ(point.visible_portals.count, 0);
+        EXPECT_EQ(point.portals, 0);
         const acdf::DirectionSample a = loaded.view().sample(point, 0.3, 0.7),
                                     b = rows.view().sample(row, 0.3, 0.7);
         EXPECT_EQ(a.pdf, b.pdf);

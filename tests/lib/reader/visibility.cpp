@@ -41,7 +41,7 @@ TEST(Visibility, PdfsIntegrateToOne) {
         for (const auto& n : kNormals)
             for (const auto& x : kPositions) {
                 const AcdfLocalPoint point = loaded.view().at(x, n);
-                EXPECT_GT(point.visibility.count, 0);
+                EXPECT_GT(point.cells, 0);
                 double sum = 0.0;
                 for_each_direction(
                     [&](const float* d, double angle) { sum += double{loaded.view().pdf(point, d)} * angle; });
@@ -106,7 +106,7 @@ TEST(Visibility, OutsideTheNormalAloneCounts) {
     for (const auto& x : outside)
         for (double u : {0.1, 0.5, 0.9}) {
             const AcdfLocalPoint point = loaded.view().at(x, kNormals[1]);
-            EXPECT_EQ(point.visibility.count, 0);
+            EXPECT_EQ(point.cells, 0);
             const acdf::DirectionSample a = loaded.view().sample(point, u, u),
                                         b = loaded.view().sample(kNormals[1], u, u);
             EXPECT_EQ(a.pdf, b.pdf);
@@ -114,7 +114,7 @@ TEST(Visibility, OutsideTheNormalAloneCounts) {
         }
     const LoadedLocal plain(lit_local());
     EXPECT_FALSE(plain.view().has_visibility());
-    EXPECT_EQ(plain.view().at(kPositions[0], kNormals[0]).visibility.count, 0);
+    EXPECT_EQ(plain.view().at(kPositions[0], kNormals[0]).cells, 0);
 }
 
 TEST(Visibility, PositionsAreTransformed) {
@@ -125,9 +125,8 @@ TEST(Visibility, PositionsAreTransformed) {
     for (const auto& x : kPositions) {
         const float there[3] = {x[1] / 2, (x[2] + 1) / 2, (x[0] - 1) / 2};
         const AcdfLocalPoint a = loaded.view().at(x, kNormals[1]), b = other.view().at(there, kNormals[1]);
-        ASSERT_EQ(a.visibility.count, b.visibility.count);
-        for (int k = 0; k < a.visibility.count; ++k)
-            EXPECT_NEAR(a.visibility.weight[k], b.visibility.weight[k], 1e-6);
+        ASSERT_EQ(a.cells, b.cells);
+        for (int k = 0; k < a.cells; ++k) EXPECT_NEAR(a.by.place.weight[k], b.by.place.weight[k], 1e-6);
     }
 }
 

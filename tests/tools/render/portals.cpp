@@ -55,8 +55,8 @@ TEST(MeshPortals, AreGivenByCornersAndByAScene) {
             EXPECT_NEAR(a.data().portals.portals->sides[k], other->data().portals.portals->sides[k], 1e-5);
     }
     const float x[3] = {0.5f, -1, 0.1f}, y[3] = {-1, 0.1f, 0.5f}, up[3] = {0, 0, 1};
-    EXPECT_EQ(a.file.local().at(x, up).visible_portals.count, 1);
-    EXPECT_EQ(c.file.local().at(y, up).visible_portals.count, 1);
+    EXPECT_EQ(a.file.local().at(x, up).portals, 1);
+    EXPECT_EQ(c.file.local().at(y, up).portals, 1);
 
     const Json info = Json::parse(run_acdf({"info", "--json", folder / "one.acdf"}).out);
     EXPECT_EQ(info.at("local").at("portals").at("count"), 1);

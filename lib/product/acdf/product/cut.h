@@ -24,14 +24,14 @@ enum {
 
 /* A box: what lies below a split or in a tile. What samples and pdfs read stands first. */
 typedef struct AcdfCutPart {
-    double numbers[2][2];               /* random numbers that sample it: from low to high of axis 0, of axis 1 */
-    double weight[ACDF_MAX_ROWS_MIXED]; /* what each row gives to it */
-    double bright_tiles;                /* weights of the bright tiles in it */
-    double sum;                         /* of all weights */
-    double probability;                 /* of the cut, for its maker to set */
-    uint16_t node;                      /* the split, or the tile with its flag */
-    uint16_t entry;                     /* the same in runtime tables */
-    uint16_t first_light, end_light;    /* which bright tiles lie in it */
+    double numbers[2][2];              /* random numbers that sample it: from low to high of axis 0, of axis 1 */
+    double weight[ACDF_NORMALS_MIXED]; /* what each row gives to it */
+    double bright_tiles;               /* weights of the bright tiles in it */
+    double sum;                        /* of all weights */
+    double probability;                /* of the cut, for its maker to set */
+    uint16_t node;                     /* the split, or the tile with its flag */
+    uint16_t entry;                    /* the same in runtime tables */
+    uint16_t first_light, end_light;   /* which bright tiles lie in it */
     uint32_t low[2], high[2];
     uint32_t tile;  /* the first tile in it; they are numbered in the order of the traversal */
     uint16_t owner; /* 2 * split of the cut + side; of the whole: not used */
@@ -44,8 +44,10 @@ typedef struct AcdfCutSplit {
 } AcdfCutSplit;
 
 typedef struct AcdfCut {
-    int count;   /* of parts; 0: there is nothing to sample */
-    int nearest; /* which of the rows weighs most */
+    int count;              /* of parts; 0: there is nothing to sample */
+    int nearest;            /* which of the rows weighs most */
+    const uint16_t* hearts; /* by tables: which tiles that row lights most below each split; null: they have none */
+    AcdfVisibilityMixture cells; /* of the point */
     AcdfCutPart part[ACDF_CUT_MAX_PARTS];
     AcdfCutSplit split[ACDF_CUT_MAX_PARTS - 1];
     uint32_t boxes[ACDF_CUT_BLOCKS][16];     /* `numbers` of 16 parts each, as AcdfSquares has boxes */
@@ -92,13 +94,25 @@ ACDF_FN void acdf_cut_begin_rows(const AcdfLocal* local, const AcdfLocalPoint* p
     memset(whole, 0, sizeof *whole);
     cut->count = 1;
     cut->nearest = 0;
+    cut->hearts = 0;
     for (k = 1; k < ACDF_NORMALS_MIXED; ++k)
-        if (point->rows.weight[k] > point->rows.weight[cut->nearest]) cut->nearest = k;
+        if (point->by.rows.weight[k] > point->by.rows.weight[cut->nearest]) cut->nearest = k;
     whole->node = local->rows_of_normals->splits ? 0 : ACDF_TILE_FLAG;
     whole->high[0] = local->environment.columns;
     whole->high[1] = local->environment.rows;
-    acdf_cut_set_steps(&point->rows, &all, whole);
+    acdf_cut_set_steps(&point->by.rows, &all, whole);
     whole->probability = 1.0;
+}
+
+/* Which tiles row k of a point lights most below each split, by tables; null: they have none. */
+ACDF_INLINE const uint16_t* acdf_cut_hearts(const AcdfLocal* local, const AcdfLocalPoint* point, int k) {
+    const AcdfLocalTables* tables = local->tables;
+    const uint32_t splits = local->blend.tiles->tile_count - 1;
+    uint32_t row;
+    if (!tables || !tables->hearts || point->mix.count == 0) return 0;
+    if (point->cells == 0) return acdf_local_hearts(tables, point->by.tabled.codes[k]);
+    row = splits > 0 ? (uint32_t)((size_t)(point->mix.row[k] - local->blend.rows) / splits) : 0;
+    return acdf_local_hearts(tables, acdf_tile_row(acdf_local_words(tables), &tables->tiles, row));
 }
 
 /* The whole as one part, of probability 1. For points that bright tiles and shared tiles serve (ACDF_LOCAL_BLEND),
@@ -114,7 +128,8 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
     cut->count = 1;
     if (acdf_local_tabled(local, point)) {
         const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local->tables);
-        const AcdfHorizon horizon = acdf_horizon(point);
+        const AcdfScaledNormal normal = acdf_local_scaled_normal(point);
+        const AcdfHorizon horizon = acdf_horizon(&normal);
         for (i = 0; i < local->bright_tile_count; i += 2)
             acdf_store_weights(acdf_bright_tile_pair_weights(pair++, &horizon), &cut->light[i]);
     } else
@@ -130,13 +145,20 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
     whole->low[0] = whole->low[1] = 0;
     whole->high[0] = local->environment.columns;
     whole->high[1] = local->environment.rows;
-    for (k = 0; k < ACDF_MAX_ROWS_MIXED; ++k) whole->weight[k] = k < point->mix.count ? point->mix.weight[k] : 0.0;
+    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) whole->weight[k] = k < point->mix.count ? point->mix.weight[k] : 0.0;
     cut->nearest = 0;
     for (k = 1; k < point->mix.count; ++k)
         if (point->mix.weight[k] > point->mix.weight[cut->nearest]) cut->nearest = k;
+    cut->hearts = acdf_cut_hearts(local, point, cut->nearest);
+    if (point->cells > 0) acdf_local_cells(local, point, &cut->cells);
     whole->bright_tiles = acdf_cut_bright_tiles(cut, 0, whole->end_light);
     whole->sum = whole->bright_tiles + acdf_mixture_sum(&point->mix);
     whole->probability = 1.0;
+}
+
+/* The rows of a point as divisions read them, in tables or in the file. */
+ACDF_INLINE const uint8_t* const* acdf_cut_rows(const AcdfLocal* local, const AcdfLocalPoint* point) {
+    return acdf_local_tabled(local, point) ? point->by.tabled.codes : point->mix.row;
 }
 
 /* Asks for what divisions of the whole into `parts` read of the rows, so that it comes while something else is
@@ -145,12 +167,11 @@ ACDF_FN void acdf_cut_ahead(const AcdfLocal* local, const AcdfLocalPoint* point,
     const uint32_t some = 32u * (uint32_t)(parts < ACDF_CUT_MAX_PARTS ? parts : ACDF_CUT_MAX_PARTS);
     uint32_t split, end;
     int i;
-    if (!local->tables || !local->tables->hearts || point->mix.count == 0) return;
+    if (!cut->hearts) return;
     end = local->tables->tiles.stride < some ? local->tables->tiles.stride : some;
-    for (split = 0; split < end; split += 32)
-        ACDF_PREFETCH(acdf_local_hearts(local->tables, point->codes[cut->nearest]) + split);
+    for (split = 0; split < end; split += 32) ACDF_PREFETCH(cut->hearts + split);
     for (i = 0; i < point->mix.count; ++i)
-        for (split = 0; split < end; split += 64) ACDF_PREFETCH(point->codes[i] + split);
+        for (split = 0; split < end; split += 64) ACDF_PREFETCH(acdf_cut_rows(local, point)[i] + split);
 }
 
 /* Whether a part can be divided: it is no tile, and there is room. */
@@ -177,8 +198,8 @@ ACDF_INLINE double acdf_cut_share_rows(const uint16_t* codebook, const uint8_t* 
 ACDF_FN double acdf_cut_share(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCutPart* part,
                               AcdfCutPart* upper, double* high) {
     const uint16_t* codebook = local->blend.tiles->codebook;
-    const uint8_t* const* row = local->tables ? point->codes : point->mix.row;
-    const uint32_t split = local->tables ? part->entry : part->node;
+    const uint8_t* const* row = acdf_cut_rows(local, point);
+    const uint32_t split = acdf_local_tabled(local, point) ? part->entry : part->node;
     switch (point->mix.count) {
     case 3:
         return acdf_cut_share_rows(codebook, row, 3, split, part, upper, high);
@@ -188,10 +209,10 @@ ACDF_FN double acdf_cut_share(const AcdfLocal* local, const AcdfLocalPoint* poin
 }
 
 /* What a position sees of the halves, made to add up to what the part had. Returns the sum of the lower one. */
-ACDF_FN double acdf_cut_see(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCutPart* part,
-                            AcdfCutPart* upper, double low, double* high) {
-    const double odds = acdf_visibility_odds(&local->visibility, local->blend.tiles->codebook, &point->visibility,
-                                             point->visibility.count, part->node);
+ACDF_FN double acdf_cut_see(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                            AcdfCutPart* part, AcdfCutPart* upper, double low, double* high) {
+    const double odds = acdf_visibility_odds(&local->visibility, local->blend.tiles->codebook, &cut->cells,
+                                             cut->cells.count, part->node);
     double scale;
     int i;
     if (!(odds >= 0.0)) return low;
@@ -241,11 +262,11 @@ ACDF_FN void acdf_cut_divide_rows(const AcdfLocal* local, const AcdfLocalPoint* 
     AcdfCutPart *part = &cut->part[number], *upper = &cut->part[cut->count];
     const AcdfRowSplit* split = &acdf_row_splits(rows)[part->node];
     const uint32_t axis = split->place & 1u, position = split->place >> 2;
-    AcdfRowSteps steps = acdf_cut_steps(part), lower = acdf_rows_divide(rows, &point->rows, part->node, &steps);
+    AcdfRowSteps steps = acdf_cut_steps(part), lower = acdf_rows_divide(rows, &point->by.rows, part->node, &steps);
     *upper = *part;
     acdf_cut_add_split(cut, number, axis | position << 3);
-    acdf_cut_set_steps(&point->rows, &lower, part);
-    acdf_cut_set_steps(&point->rows, &steps, upper);
+    acdf_cut_set_steps(&point->by.rows, &lower, part);
+    acdf_cut_set_steps(&point->by.rows, &steps, upper);
     part->high[axis] = upper->low[axis] = position;
     part->node = acdf_cut_of_node(acdf_row_half(rows, split, 0));
     upper->node = acdf_cut_of_node(acdf_row_half(rows, split, 1));
@@ -272,7 +293,7 @@ ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* p
      * and one. */
     upper->tile = child & ACDF_TILE_FLAG ? child & ~ACDF_TILE_FLAG : part->tile + child - part->node;
     low = acdf_cut_share(local, point, part, upper, &high);
-    if (point->visibility.count > 0 && low + high > 0.0) low = acdf_cut_see(local, point, part, upper, low, &high);
+    if (point->cells > 0 && low + high > 0.0) low = acdf_cut_see(local, point, cut, part, upper, low, &high);
     acdf_cut_share_bright_tiles(local, cut, part, upper);
     part->sum = low + part->bright_tiles;
     upper->sum = high + upper->bright_tiles;
@@ -296,7 +317,7 @@ ACDF_FN uint32_t acdf_cut_row_heart(const AcdfLocal* local, const AcdfLocalPoint
                                     int number, float direction[3]) {
     const AcdfNormalRows* rows = local->rows_of_normals;
     const uint32_t* shares = ACDF_TOP_ARRAY(uint32_t, rows, rows->shares);
-    const uint8_t* codes = point->rows.codes[cut->nearest];
+    const uint8_t* codes = point->by.rows.codes[cut->nearest];
     uint32_t node = acdf_cut_node(&cut->part[number]), box[2][2], k;
     while (!(node & ACDF_TOP_TILE))
         node = acdf_row_half(rows, &acdf_row_splits(rows)[node], (uint32_t)(shares[codes[node]] < ACDF_STEPS / 2u));
@@ -328,10 +349,8 @@ ACDF_CALLED uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint
         for (k = 0; k < 3; ++k) direction[k] = local->bright_tiles[brightest].direction[k];
         return local->bright_tiles[brightest].tile;
     }
-    if (local->tables && local->tables->hearts && point->mix.count > 0) {
-        const uint32_t tile = part->node & ACDF_TILE_FLAG
-                                  ? part->node & ~ACDF_TILE_FLAG
-                                  : acdf_local_hearts(local->tables, point->codes[cut->nearest])[part->entry];
+    if (cut->hearts) {
+        const uint32_t tile = part->node & ACDF_TILE_FLAG ? part->node & ~ACDF_TILE_FLAG : cut->hearts[part->entry];
         for (k = 0; k < 3; ++k) direction[k] = acdf_local_middle(local->tables, tile)[k];
         return tile;
     }

@@ -59,7 +59,7 @@ ACDF_INLINE void acdf_cut_batch_lights(const AcdfLocal* local, const AcdfLocalPo
         const int lit = acdf_cut_samples_bright_tile(one->part, one->u[0]);
         acdf_cut_range(one->part, one->range);
         for (k = 0; k < ACDF_CUT_BATCH_ROWS; ++k)
-            ACDF_PREFETCH(point->codes[k] + (one->part->entry & ~ACDF_TILE_FLAG));
+            ACDF_PREFETCH(point->by.tabled.codes[k] + (one->part->entry & ~ACDF_TILE_FLAG));
         if (lit)
             one->tile = acdf_cut_sample_bright_tile(local, cut, one->part, one->u, one->range, &one->probability);
         mixed->lane[mixed->count] = i;
@@ -72,7 +72,7 @@ ACDF_INLINE AcdfMixture acdf_cut_batch_mixture(const AcdfCutPart* part) {
     AcdfMixture mix;
     int i;
     mix.count = ACDF_CUT_BATCH_ROWS;
-    for (i = 0; i < ACDF_MAX_ROWS_MIXED; ++i) {
+    for (i = 0; i < ACDF_NORMALS_MIXED; ++i) {
         mix.row[i] = 0;
         mix.weight[i] = i < ACDF_CUT_BATCH_ROWS ? part->weight[i] : 0.0;
     }
@@ -102,7 +102,8 @@ ACDF_INLINE void acdf_cut_batch_tiles(const AcdfLocal* local, const AcdfLocalPoi
             one->u[1] = acdf_unit_interval(from[1] / one->given);
             continue;
         }
-        acdf_tile_walk_begin(words, tables, &mix, point->codes, ACDF_CUT_BATCH_ROWS, node, from, &walk[number]);
+        acdf_tile_walk_begin(words, tables, &mix, point->by.tabled.codes, ACDF_CUT_BATCH_ROWS, node, from,
+                             &walk[number]);
         walked.lane[walked.count++] = number;
     }
     on_way = walked;
@@ -110,7 +111,7 @@ ACDF_INLINE void acdf_cut_batch_tiles(const AcdfLocal* local, const AcdfLocalPoi
         uint32_t left = 0;
         for (k = 0; k < on_way.count; ++k) {
             const uint32_t number = on_way.lane[k];
-            acdf_tile_walk_step(words, tables, point->codes, ACDF_CUT_BATCH_ROWS, &walk[number]);
+            acdf_tile_walk_step(words, tables, point->by.tabled.codes, ACDF_CUT_BATCH_ROWS, &walk[number]);
             on_way.lane[left] = number;
             left += (uint32_t) !(walk[number].node & ACDF_TILE_FLAG);
         }

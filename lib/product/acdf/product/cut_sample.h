@@ -89,7 +89,7 @@ ACDF_FN AcdfMixture acdf_cut_mixture(const AcdfLocalPoint* point, const AcdfCutP
     AcdfMixture mix;
     int i;
     mix.count = point->mix.count;
-    for (i = 0; i < ACDF_MAX_ROWS_MIXED; ++i) {
+    for (i = 0; i < ACDF_NORMALS_MIXED; ++i) {
         mix.row[i] = point->mix.row[i];
         mix.weight[i] = i < mix.count ? part->weight[i] : 0.0;
     }
@@ -121,14 +121,13 @@ ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoi
         const AcdfTileTables* tables = &local->tables->tiles;
         double from[2];
         const double whole = acdf_cut_of_all(mix, u, from);
-        const uint32_t tile = acdf_tile_sample(words, tables, mix, point->codes, part->entry, from, u, inside);
+        const uint32_t tile =
+            acdf_tile_sample(words, tables, mix, point->by.tabled.codes, part->entry, from, u, inside);
         acdf_tile_range(acdf_tile_record(words, tables, tile), range);
         *inside = acdf_positive(*inside / whole);
         return tile;
     }
-    if (point->visibility.count > 0)
-        return acdf_visibility_sample_below(&local->visibility, &local->blend, mix, &point->visibility, part->node,
-                                            u, range, inside);
+    if (point->cells > 0) return acdf_local_sample_visible(local, point, mix, part->node, u, range, inside);
     return acdf_blend_sample_below(&local->blend, mix, part->node, u, range, inside);
 }
 
@@ -141,9 +140,7 @@ ACDF_FN uint32_t acdf_cut_find_tile(const AcdfLocal* local, const AcdfLocalPoint
         *inside = acdf_local_found_tile(local, point, mix, tile, part->depth, range);
         return tile;
     }
-    if (point->visibility.count > 0)
-        return acdf_visibility_find_below(&local->visibility, &local->blend, mix, &point->visibility, part->node,
-                                          square, range, inside);
+    if (point->cells > 0) return acdf_local_find_visible(local, point, mix, part->node, square, range, inside);
     return acdf_blend_find_below(&local->blend, mix, part->node, square, range, 0, inside);
 }
 
@@ -297,7 +294,7 @@ ACDF_FN const AcdfCutPart* acdf_cut_find(const AcdfCut* cut, const uint32_t* squ
 ACDF_INLINE double acdf_cut_row_probability(const AcdfLocalPoint* point, const AcdfCutPart* part,
                                             const AcdfRowSteps* steps) {
     const AcdfRowSteps all = acdf_cut_steps(part);
-    return part->probability * (acdf_rows_mass(&point->rows, steps) / acdf_rows_mass(&point->rows, &all));
+    return part->probability * (acdf_rows_mass(&point->by.rows, steps) / acdf_rows_mass(&point->by.rows, &all));
 }
 
 /* acdf_cut_pdf where rows of halvings serve a point. */
@@ -310,7 +307,7 @@ ACDF_FN float acdf_cut_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* poi
     AcdfSpan box[2];
     if (!(part->probability > 0.0)) return 0.0f;
     steps = acdf_cut_steps(part);
-    tile = acdf_rows_find_below(rows, &point->rows, acdf_cut_node(part), &steps, square);
+    tile = acdf_rows_find_below(rows, &point->by.rows, acdf_cut_node(part), &steps, square);
     return acdf_float_pdf(acdf_rows_find_inside(local->environment.halved, grid, acdf_row_tile(rows, tile),
                                                 acdf_cut_row_probability(point, part, &steps), square, box));
 }
@@ -320,7 +317,7 @@ ACDF_FN AcdfDirectionSample acdf_cut_row_sample(const AcdfLocal* local, const Ac
                                                 const AcdfCutPart* part, const AcdfGrid* grid, double u[2]) {
     const AcdfNormalRows* rows = local->rows_of_normals;
     AcdfRowSteps steps = acdf_cut_steps(part);
-    const uint32_t tile = acdf_rows_sample_below(rows, &point->rows, acdf_cut_node(part), &steps, &u[1]);
+    const uint32_t tile = acdf_rows_sample_below(rows, &point->by.rows, acdf_cut_node(part), &steps, &u[1]);
     return acdf_rows_direction(local->environment.halved, grid, acdf_row_tile(rows, tile),
                                acdf_cut_row_probability(point, part, &steps), u);
 }

@@ -47,6 +47,31 @@ ACDF_INLINE uint32_t acdf_fast_cut_bright_tiles(const AcdfLocal* local) {
 
 /* ---- what a cut is made of -------------------------------------------------------------------------- */
 
+/* The weight of each bright tile, and room for one more; of those that a normal does not see 0. */
+ACDF_FN void acdf_fast_bright_tile_weights(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                           double out[ACDF_MAX_BRIGHT_TILES]) {
+    const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local->tables);
+    const AcdfScaledNormal normal = acdf_local_scaled_normal(point);
+    uint32_t left = acdf_local_seen(local, point->by.fast.facet), k;
+    for (k = 0; k < ACDF_MAX_BRIGHT_TILES; ++k) out[k] = 0.0;
+#ifdef ACDF_SSE2
+    {
+        const AcdfHorizon horizon = acdf_horizon(&normal);
+        const __m128d inverse = _mm_set1_pd(1.0 / point->length);
+        for (; left; left &= left - 1) {
+            k = acdf_lowest_bit(left);
+            _mm_storeu_pd(out + 2 * k, acdf_pair_weights(&horizon, pair + k, inverse));
+        }
+    }
+#else
+    for (; left; left &= left - 1) {
+        k = acdf_lowest_bit(left);
+        out[2 * k] = acdf_pair_weight(&normal, pair + k, 0, 1.0 / point->length);
+        out[2 * k + 1] = acdf_pair_weight(&normal, pair + k, 1, 1.0 / point->length);
+    }
+#endif
+}
+
 /* What the mixture gives to each group, of 32767 times its whole: as many as a row has ends, into the first ones;
  * there is room for a number more. */
 ACDF_FN void acdf_fast_group_masses(const AcdfFast* fast, const AcdfFastMixture* mix, int32_t* out) {
@@ -180,10 +205,10 @@ ACDF_INLINE uint32_t acdf_fast_cut_sample_tile(const AcdfLocalPoint* point, cons
         tile.mass = part.mass;
         tile.below = part.below;
     } else {
-        const AcdfFastGroup group = acdf_fast_find_group(&point->fast, number);
+        const AcdfFastGroup group = acdf_fast_find_group(&point->by.fast.mix, number);
         whole = 255.0 * group.whole;
         y = acdf_fast_scaled(u[1], whole);
-        tile = acdf_fast_tile_of(&point->fast, &group, first, y);
+        tile = acdf_fast_tile_of(&point->by.fast.mix, &group, first, y);
     }
     u[1] = (y - tile.below) / tile.mass;
     share->of *= tile.mass;
@@ -200,8 +225,8 @@ ACDF_INLINE void acdf_fast_cut_find_tile(const AcdfLocalPoint* point, const Acdf
         share->of *= acdf_fast_cut_part(end, i).mass;
         share->all *= (double)end[ACDF_FAST_GROUP - 1];
     } else {
-        const AcdfFastGroup group = acdf_fast_find_group(&point->fast, number);
-        share->of *= acdf_fast_find_tile(&point->fast, &group, tile - i, i);
+        const AcdfFastGroup group = acdf_fast_find_group(&point->by.fast.mix, number);
+        share->of *= acdf_fast_find_tile(&point->by.fast.mix, &group, tile - i, i);
         share->all *= 255.0 * (group.whole > 1.0 ? group.whole : 1.0); /* of dark groups all masses are 0 */
     }
 }

@@ -141,9 +141,8 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
         else acdf_local_at(&light_, frame.normal, &point.light);
     } else {
         point.light.what = ACDF_LOCAL_TREE;
-        point.light.root = light_.environment.root;
-        point.light.visibility.count = 0;
-        point.light.visible_portals.count = 0;
+        point.light.by.root = light_.environment.root;
+        point.light.cells = point.light.portals = 0;
     }
     point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
     const PointOfLobe<AnyLobe> of_lobe = {light_, point.light, point.frame, lobe_, point.lobe, parts_, vectors_};

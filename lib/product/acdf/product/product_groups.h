@@ -91,15 +91,14 @@ ACDF_METHOD void GroupRating<AnyLobe>::measure() noexcept {
     const int ends = static_cast<int>(of_.light.fast.ends),
               bright_tiles = static_cast<int>(of_.light.bright_tile_count);
     const double of_all = 1.0 / of_.at.sum;
-    const float unit = static_cast<float>(255.0 * of_.at.unit);
+    const float unit = static_cast<float>(255.0 * of_.at.by.fast.unit);
     std::int32_t masses[ACDF_FAST_CUT_GROUPS];
-    float weight[ACDF_MAX_BRIGHT_TILES] = {};
+    double weight[ACDF_MAX_BRIGHT_TILES];
     int count = 0;
     first_entry_ = static_cast<int>(acdf_fast_cut_bright_tiles(&of_.light));
-    acdf_fast_group_masses(&of_.light.fast, &of_.at.fast, masses);
-    for (std::uint32_t i = 0; i < of_.at.lit; ++i)
-        weight[acdf_local_lit(&of_.at, i)] = static_cast<float>(of_.at.light[i] * of_all);
-    for (int i = 0; i < bright_tiles; ++i) count = add(count, i, weight[i], 0.0f);
+    acdf_fast_group_masses(&of_.light.fast, &of_.at.by.fast.mix, masses);
+    acdf_fast_bright_tile_weights(&of_.light, &of_.at, weight);
+    for (int i = 0; i < bright_tiles; ++i) count = add(count, i, static_cast<float>(weight[i] * of_all), 0.0f);
     add(count, first_entry_ - 1, 0.0f, 0.0f);
     bright_tiles_ = ++count;
     for (int i = 0; i < ends; ++i)
@@ -128,10 +127,10 @@ ACDF_METHOD void GroupRating<AnyLobe>::sample_guides() noexcept {
 /// The row that weighs most.
 template <class AnyLobe>
 ACDF_METHOD std::uint32_t GroupRating<AnyLobe>::nearest_row() const noexcept {
-    const std::int32_t* weight = of_.at.fast.weight;
+    const std::int32_t* weight = of_.at.by.fast.mix.weight;
     const int of_two = weight[1] > weight[0], nearest = weight[2] > weight[of_two] ? 2 : of_two;
-    return static_cast<std::uint32_t>(static_cast<std::size_t>(of_.at.fast.group[nearest] - of_.light.fast.groups) /
-                                      of_.light.fast.ends);
+    return static_cast<std::uint32_t>(
+        static_cast<std::size_t>(of_.at.by.fast.mix.group[nearest] - of_.light.fast.groups) / of_.light.fast.ends);
 }
 
 /// At bright tiles that are bright, and where groups with much light are lit most. In other groups the lobe is
@@ -255,11 +254,11 @@ ACDF_METHOD void GroupRating<AnyLobe>::open_chosen() noexcept {
     Looks tiles;
     for (int k = 0; k < open_; ++k) {
         const std::uint32_t group = group_of(opened_[k]), begin = ACDF_FAST_GROUP * group;
-        const AcdfFastGroup mixture = acdf_fast_find_group(&of_.at.fast, group);
+        const AcdfFastGroup mixture = acdf_fast_find_group(&of_.at.by.fast.mix, group);
         const float of_all = static_cast<float>(255.0 * (mixture.whole > 1.0 ? mixture.whole : 1.0));
         const float unit = light_in_[opened_[k]] / of_all;
         std::int32_t masses[group_size];
-        acdf_fast_tile_masses(&of_.at.fast, &mixture, begin, masses);
+        acdf_fast_tile_masses(&of_.at.by.fast.mix, &mixture, begin, masses);
         for (int i = 0; i < group_size; ++i, ++all_) {
             const std::uint32_t tile = begin + static_cast<std::uint32_t>(i);
             const float* middle = acdf_local_middle(of_.light.tables, tile < last ? tile : last);

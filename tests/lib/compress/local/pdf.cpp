@@ -371,9 +371,9 @@ TEST_P(Maps, StrataStayStrata) {
             if (source.what == ACDF_LOCAL_NOTHING) break;
             AcdfRange range[2];
             acdf_sphere_ranges(columns, rows, range);
-            if (source.what == ACDF_LOCAL_FAST) acdf_local_fast_sample_cell(&local, &source, 1, u, range);
+            if (source.what == ACDF_LOCAL_FAST) acdf_local_fast_sample_cell(&local, &source, u, range);
             else if (source.what == ACDF_LOCAL_BLEND) acdf_local_blend_sample(&local, &source, u, range);
-            else acdf_tree_sample(local.environment.tree, source.root, u, range);
+            else acdf_tree_sample(local.environment.tree, source.by.root, u, range);
             const bool same = i > 0 && range[0].low == before[0].low && range[1].low == before[1].low &&
                               range[0].high == before[0].high && range[1].high == before[1].high;
             if (same) {
