@@ -105,12 +105,9 @@ ACDF_FN double acdf_local_visibility(const AcdfLocal* local, const AcdfLocalPoin
 
 /* The visibility cells of a point, but for their rows. */
 ACDF_INLINE void acdf_local_numbers_of_cells(const AcdfLocalPoint* point, AcdfVisibilityMixture* out) {
-    int i;
     out->count = point->cells;
-    for (i = 0; i < ACDF_MAX_CELLS_MIXED; ++i) { /* as many as the compiler knows */
-        out->number[i] = point->by.place.row[i];
-        out->weight[i] = point->by.place.weight[i];
-    }
+    memcpy(out->number, point->by.place.row, sizeof out->number);
+    memcpy(out->weight, point->by.place.weight, sizeof out->weight);
 }
 ACDF_INLINE void acdf_local_cells(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfVisibilityMixture* out) {
     acdf_local_numbers_of_cells(point, out);

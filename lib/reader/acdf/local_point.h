@@ -133,12 +133,9 @@ ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLo
 
 /* Keeps the visibility cells of a point. */
 ACDF_INLINE void acdf_local_keep_cells(const AcdfVisibilityMixture* cells, AcdfLocalPoint* out) {
-    int i;
     out->cells = (uint8_t)cells->count;
-    for (i = 0; i < ACDF_MAX_CELLS_MIXED; ++i) {
-        out->by.place.row[i] = i < cells->count ? cells->number[i] : 0;
-        out->by.place.weight[i] = i < cells->count ? cells->weight[i] : 0.0;
-    }
+    memcpy(out->by.place.row, cells->number, sizeof cells->number);
+    memcpy(out->by.place.weight, cells->weight, sizeof cells->weight);
 }
 
 /* Finds what serves a normal at a position of the scene by rows alone, and the visibility cells of that. */

@@ -115,6 +115,10 @@ ACDF_FN void acdf_visibility_at(const AcdfVisibilityTable* table, uint32_t tile_
     int i;
     out->count = 0;
     if (!table->header || !acdf_visibility_coordinates(table, position, normal, x)) return;
+    for (i = 0; i < ACDF_MAX_CELLS_MIXED; ++i) { /* all of them: points keep them as they lie */
+        node[i] = 0;
+        out->weight[i] = 0.0;
+    }
     node[0] = table->header->split_count > 0 ? 0 : ACDF_VISIBILITY_ROW;
     out->weight[0] = 1.0;
     out->count = 1;
