@@ -18,8 +18,10 @@
 #include "golden_samples.h"
 #include "write_file.h"
 
+#include <acdf/brdf_half.h>
 #include <acdf/sphere.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -205,6 +207,60 @@ std::vector<bool> halvings_above(const Halvings& tree, std::uint32_t depth) {
         open.insert(open.end(), 2, here + 1);
     }
     return out;
+}
+
+/// Codes of a row where it leads random numbers: some of `code(i)`, by the number of the split.
+template <class Code>
+std::vector<std::uint16_t> reached_codes(const RowHalvings& tree, const Code& code) {
+    std::vector<std::uint16_t> out;
+    std::vector<bool> open = {true}; // of the nodes that wait: whether the row leads there
+    const std::uint32_t last = (1u << tree.code_bits) - 1;
+    std::size_t halving = 0;
+    std::uint32_t split = 0;
+    for (const std::int8_t axis : tree.halvings.axes) {
+        const bool here = open.back();
+        open.pop_back();
+        if (axis < 0) continue;
+        if (!tree.has_codes[halving++]) {
+            open.insert(open.end(), 2, here);
+            continue;
+        }
+        const std::uint32_t of_split = code(split++);
+        if (here) out.push_back(static_cast<std::uint16_t>(of_split));
+        open.push_back(here && of_split != last); // the upper half
+        open.push_back(here && of_split != 0);
+    }
+    return out;
+}
+
+/// Five rows at the top of a tree; the first leaves a half dark.
+RowHalvings five_rows(std::uint32_t columns, std::uint32_t rows) {
+    RowHalvings out;
+    out.halvings = HalvingsGrower(8, 3, 7).grown(columns, rows);
+    out.has_codes = halvings_above(out.halvings, 4);
+    out.code_bits = 6;
+    for (std::uint32_t row = 0; row < 5; ++row)
+        out.rows.push_back(reached_codes(out, [&](std::uint32_t split) {
+            return row == 0 && split == 2 ? 63u : 12u + (13 * row + 7 * split + 3 * row * split) % 40;
+        }));
+    return out;
+}
+
+/// A local environment on a tree of halvings; a bin is not stored.
+Golden local_halvings() {
+    Description d = environment_description(24, 14);
+    const RowHalvings tree = five_rows(24, 14);
+    d.kind = ACDF_KIND_LOCAL;
+    d.total = 4.0;
+    d.axes.push_back({"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 18, 0.0, 18.0});
+    d.shares.clear();
+    std::vector<std::uint32_t> roots;
+    for (std::uint32_t bin = 0; bin < 18; ++bin) {
+        roots.push_back(bin == 7 ? ACDF_NO_ROOT : bin % 5);
+        d.shares.push_back(bin == 7 ? 0.0f : float(1 + bin % 4) / 16.0f);
+    }
+    d.chunks = {local_chunk(0.0f, {}), rows_chunk(tree)};
+    return {"local_halvings", store(tree.halvings, roots, d)};
 }
 
 /// Maps of one tree along `axes`; the codes of the first map leave two halves dark.
@@ -449,28 +505,18 @@ Description brdf_axes(const std::vector<float>& elevations, std::uint32_t azimut
     return d;
 }
 
-/// Bins that share seven cells; the first row gives nothing to the last of them.
+/// Bins that share a tree of halvings.
 Golden brdf(const char* name, const std::vector<float>& elevations, std::uint32_t azimuths, std::uint32_t flags,
             float diffuse_share) {
-    StoredRows rows;
-    rows.splits = {{kTheta | 40u << 3, {1, 3}},
-                   {kPhi | 20u << 3, {ACDF_TILE_FLAG, 2}},
-                   {kTheta | 7u << 3, {ACDF_TILE_FLAG | 1, ACDF_TILE_FLAG | 2}},
-                   {kTheta | 300u << 3, {4, 5}},
-                   {kPhi | 31u << 3, {ACDF_TILE_FLAG | 3, ACDF_TILE_FLAG | 4}},
-                   {kPhi | 11u << 3, {ACDF_TILE_FLAG | 5, ACDF_TILE_FLAG | 6}}};
-    for (std::uint32_t i = 0; i < 256; ++i) rows.codebook.push_back(static_cast<std::uint16_t>(257 * i));
-    rows.row_count = 5;
-    for (std::uint32_t r = 0; r < rows.row_count; ++r)
-        for (std::uint32_t split = 0; split < 6; ++split)
-            rows.codes.push_back(
-                static_cast<std::uint8_t>(r == 0 && split == 5 ? 255 : 200 - 30 * r + 17 * split * (r % 2)));
-    EncodedTree tree = encode_tree({{{kPhi, {}, {1.0}, {}, {}}}, {0}});
     Description d = brdf_axes(elevations, azimuths, flags, diffuse_share);
-    tree.roots.clear();
-    for (std::uint32_t bin = 0; bin < d.shares.size(); ++bin) tree.roots.push_back(bin % 5);
-    for (Chunk& chunk : shared_chunks(rows)) d.chunks.push_back(std::move(chunk));
-    return {name, store(tree, d)};
+    d.axes[1].measure = ACDF_MEASURE_HALF;
+    d.axes[1].resolution = ACDF_HALF_ROWS;
+    RowHalvings tree = five_rows(d.axes[0].resolution, d.axes[1].resolution);
+    std::vector<std::uint32_t> roots;
+    for (std::uint32_t bin = 0; bin < d.shares.size(); ++bin) roots.push_back(bin % 5);
+    tree.rows.resize(std::min<std::size_t>(5, roots.size()));
+    d.chunks.push_back(rows_chunk(tree));
+    return {name, store(tree.halvings, roots, d)};
 }
 
 /// A tree for each bin, with and without a linear density; the nearest bin serves.
@@ -517,6 +563,7 @@ int main(int argc, char** argv) try {
           day(),
           frames(),
           local("local", ACDF_PARAM_LATLONG),
+          local_halvings(),
           local("octahedral_local", ACDF_PARAM_OCTAHEDRAL),
           local_grid(),
           local_fast("local_fast", ACDF_PARAM_LATLONG),

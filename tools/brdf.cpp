@@ -49,7 +49,6 @@ private:
     builder::BrdfOptions brdf_;
     std::string views_, knots_, budget_;
     const CLI::App* command_ = nullptr;
-    bool separate_ = false;
 };
 
 /// "32" or "32x16".
@@ -68,11 +67,9 @@ bool parse_views(const std::string& text, std::uint32_t& theta, std::uint32_t& p
 
 void BrdfConversion::check_fit() const {
     const bool variance = brdf_.fit == ACDF_FIT_VARIANCE;
-    for (const char* option : {"--cells", "--budget", "--target-variance", "--max-weight", "--no-sharing"})
+    for (const char* option : {"--cells", "--budget", "--target-variance", "--max-weight"})
         if (!variance && given(option))
             throw CLI::ValidationError(option, "is for --fit variance; use --knots or --eps with the other fits");
-    if (separate_ && given("--max-weight"))
-        throw CLI::ValidationError("--max-weight", "is for files whose views share cells");
     for (const char* option : {"--knots", "--eps"})
         if (variance && given(option))
             throw CLI::ValidationError(option, "is for --fit uniform, cdf and pdf; use --budget or --cells");
@@ -88,7 +85,6 @@ void BrdfConversion::check() {
     if (given("--knots") && !parse_pair(knots_, ACDF_MAX_SEGMENTS, brdf_.phi_segments, brdf_.theta_segments))
         throw CLI::ValidationError("--knots", "needs two counts such as 10x30 (phi_h x theta_h)");
     if (given("--eps") && !given("--knots")) brdf_.phi_segments = brdf_.theta_segments = ACDF_MAX_SEGMENTS;
-    brdf_.sharing = !separate_;
     if (brdf_.fit == ACDF_FIT_VARIANCE) read_goal(*command_, budget_, brdf_.goal);
 }
 
@@ -151,7 +147,7 @@ Converted BrdfConversion::convert(const Listener& listener) {
 
 void BrdfConversion::add_fit_options(CLI::App& command) {
     add_fit(command, brdf_.fit,
-            "How knots are chosen: variance (least noise for its size; views share cells and are interpolated), "
+            "How cells are chosen: variance (least noise for its size; views share a tree and are interpolated), "
             "or, to compare with, cdf, pdf and uniform (Lawrence et al. 2005: curves of its own for each bin of "
             "views, the nearest bin serves)")
         ->group("Fit");
@@ -160,10 +156,6 @@ void BrdfConversion::add_fit_options(CLI::App& command) {
             "--views", views_,
             "Stored views in theta_o and phi_o, such as 32 or 16x8; two counts treat the BRDF as anisotropic")
         ->option_text("N|NxM [as suits the size]")
-        ->group("Fit");
-    command
-        .add_flag("--no-sharing", separate_,
-                  "Give each bin of views a tree of its own, of which the nearest serves: to compare with")
         ->group("Fit");
     add_channels(
         command, brdf_.channels,
@@ -181,8 +173,7 @@ void BrdfConversion::add_fit_options(CLI::App& command) {
 
 void BrdfConversion::add_size_options(CLI::App& command) {
     add_goal(command, brdf_.goal.cells, budget_, brdf_.goal.variance,
-             {"Cells that all views share; without sharing: of each, on average", "N", "SIZE [128KiB]",
-              ", about, as mean over views", 1, ACDF_MAX_TILES});
+             {"Cells of each view", "N", "SIZE [128KiB]", ", about, as mean over views", 1, ACDF_MAX_TILES});
     add_max_weight(
         command, brdf_.max_weight,
         ". It is measured over the views whose variance is printed; without it, weights are held to about "

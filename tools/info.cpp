@@ -47,6 +47,7 @@ std::uint64_t count_grids(const File& file) {
 }
 
 const AcdfNormalRows* rows_of(const File& file) {
+    if (file.kind() == ACDF_KIND_BRDF) return file.brdf().data().rows_of_views;
     return file.kind() == ACDF_KIND_LOCAL ? file.local().data().rows_of_normals : nullptr;
 }
 bool is_fast(const File& file) { return file.kind() == ACDF_KIND_LOCAL && file.local().data().fast.grid; }
@@ -81,7 +82,10 @@ TreeCounts count_tree(const File& file) {
         return counts;
     }
     if (rows_of(file)) {
-        counts.cells = file.local().environment().data().halved->count + 1;
+        counts.cells =
+            (file.kind() == ACDF_KIND_BRDF ? file.brdf().data().halved : file.local().environment().data().halved)
+                ->count +
+            std::uint64_t{1};
         return counts;
     }
     if (is_fast(file)) counts.cells = count_grids(file);

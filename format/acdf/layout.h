@@ -61,7 +61,8 @@ typedef enum AcdfAxisRole { ACDF_AXIS_SAMPLED = 0, ACDF_AXIS_INDEXED = 1 } AcdfA
 /* How integer positions on an axis map to its coordinate (SPEC.md §5.2). */
 typedef enum AcdfAxisMeasure {
     ACDF_MEASURE_LINEAR = 0, /* low + (high - low) * position / resolution */
-    ACDF_MEASURE_COSINE = 1  /* cos of that: positions are equal steps of an angle */
+    ACDF_MEASURE_COSINE = 1, /* cos of that: positions are equal steps of an angle */
+    ACDF_MEASURE_HALF = 2    /* of half-vectors: fine near low (SPEC.md §11) */
 } AcdfAxisMeasure;
 
 /* What a file was made to be combined with, by multiple importance sampling (SPEC.md §5.4). */
@@ -192,9 +193,9 @@ typedef struct AcdfMapsHeader {
 #define ACDF_MOST_SUN 4u
 #define ACDF_MOST_INDEXED_AXES 3u
 
-/* Chunk NORM of a local environment, beside HALV and BINS and instead of TREE, TILE and ROWS (SPEC.md §10.7): this,
- * then a bit for each halving, 1 where each row has a code of its own, then row by row the codes of these halvings,
- * but for those that the row leads no random numbers to. Runs of bits as in HALV. */
+/* Chunk NORM of a local environment or a BRDF, beside HALV and BINS and instead of TREE, TILE and ROWS (SPEC.md
+ * §10.7 and §11): this, then a bit for each halving, 1 where each row has a code of its own, then row by row the
+ * codes of these halvings, but for those that the row leads no random numbers to. Runs of bits as in HALV. */
 typedef struct AcdfNormalsHeader {
     uint32_t row_count;
     uint32_t split_count; /* halvings with a code for each row: the top of the tree */

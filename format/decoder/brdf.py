@@ -1,4 +1,5 @@
 """SPEC.md §11: BRDFs."""
+import bisect
 import math
 import struct
 
@@ -8,12 +9,22 @@ from .sphere import NOTHING, a, clamp, direction_of, f32, pdf32, random_number, 
 from .tree import fraction_sampled, slope
 
 
-def read_views(chunk, d):
+ROWS, AT_POLE, STEPS = 512, 152, 1 << 28
+
+
+def begin_of_row(i):
+    """Where a row of half-vectors begins."""
+    t = max(i - AT_POLE, 0) / (ROWS - AT_POLE)
+    return STEPS if i == ROWS else max(i, math.floor(2 * math.sin(PI / 4 * t * t) ** 2 * STEPS))
+
+
+def read_views(chunk, d, halved):
     """Chunk VIEW. Returns mirrored, the diffuse share and the nodes."""
     require(len(d.axes) == 4, 8001)
     low = 0.0 if d.axes[0].low == 0.0 else -PI
     require(is_axis(d.axes[0], b"phi_h", 0, 0, low, PI, 65536), 8001)
-    require(is_axis(d.axes[1], b"cos_theta_h", 0, 0, 1.0, 0.0, 268435456), 8001)
+    require(is_axis(d.axes[1], b"cos_theta_h", 0, 2 if halved else 0, 1.0, 0.0, ROWS if halved else STEPS), 8001)
+    require(not halved or d.axes[1].resolution == ROWS, 8001)
     require(is_axis(d.axes[2], b"theta_o", 1, 0, 0.0, PI / 2, 65536), 8001)
     require(is_axis(d.axes[3], b"phi_o", 1, 0, -PI, PI, 65536), 8001)
     require(d.bin_count == d.axes[2].resolution * d.axes[3].resolution, 8002)
@@ -41,9 +52,11 @@ class Place:
 
 class Brdf:
     def __init__(self, tree, d, tiles, chunk):
-        self.mirrored, self.sigma, self.nodes = read_views(chunk, d)
+        self.mirrored, self.sigma, self.nodes = read_views(chunk, d, tiles is not None)
         self.tree, self.tiles, self.bins, self.total = tree, tiles, d.bins, d.total
         self.W, self.H = d.axes[0].resolution, d.axes[1].resolution
+        if tiles is not None:
+            self.H, self.begins = STEPS, [begin_of_row(i) for i in range(ROWS + 1)]
         self.F = d.axes[3].resolution
 
     def rows(self, wo):
@@ -122,6 +135,8 @@ class Brdf:
             return 0.0
         box, s = self.whole()
         square = [min(math.floor(place.X), self.W - 1), min(math.floor(place.Y), self.H - 1)]
+        if self.tiles is not None:
+            square[1] = bisect.bisect_right(self.begins, place.Y, 0, ROWS) - 1
         if view.mixture is None:
             p = self.tree.find(view.tree, square, box, s)
         elif not view.mixture:
@@ -130,6 +145,7 @@ class Brdf:
             tile, p = self.tiles.find(view.mixture, square)
             if p > 0:
                 p = self.tiles.find_within(self.tree, tile, p, square, box, s)
+                box[1] = [self.begins[row] for row in box[1]]
         return self.density(place, p, box, s)
 
     def pdf(self, wo, wi):
@@ -156,6 +172,7 @@ class Brdf:
         if view.mixture is not None:  # step 5
             tile, p = self.tiles.draw(view.mixture, u)
             p = self.tiles.sample_within(self.tree, tile, p, u, box, s)
+            box[1] = [self.begins[row] for row in box[1]]
         else:
             p = self.tree.draw(view.tree, u, box, s)
         t = [clamp(fraction_sampled(u[i], s[i]), 2.0**-30, 1 - 2.0**-30) for i in (0, 1)]

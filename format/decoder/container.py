@@ -10,10 +10,10 @@ ENVIRONMENT, LOCAL, BRDF, TABLE, INDEXED = 1, 2, 3, 4, 5
 INFLATED_LIMIT = 1 << 30
 # Of each known chunk: its flags, and the kinds in whose files it may be.
 KNOWN = {b"DESC": (1, (1, 2, 3, 4, 5)), b"BINS": (1, (1, 2, 3, 4, 5)), b"TREE": (1, (1, 2, 3, 4, 5)),
-         b"META": (0, (1, 2, 3, 4, 5)), b"TILE": (1, (2, 3)), b"ROWS": (1, (2, 3)), b"VIEW": (1, (3,)),
+         b"META": (0, (1, 2, 3, 4, 5)), b"TILE": (1, (2,)), b"ROWS": (1, (2,)), b"VIEW": (1, (3,)),
          b"LOCL": (1, (2,)), b"COMP": (1, (1, 2, 4)), b"PLAC": (0, (2,)), b"PORT": (0, (2,)),
-         b"SUMS": (1, (2,)), b"GRID": (1, (2,)), b"HALV": (1, (1, 2, 5)),
-         b"MAPS": (1, (5,)), b"NORM": (1, (2,))}
+         b"SUMS": (1, (2,)), b"GRID": (1, (2,)), b"HALV": (1, (1, 2, 3, 5)),
+         b"MAPS": (1, (5,)), b"NORM": (1, (2, 3))}
 
 __all__ = ["Refused", "Container", "read_container"]
 
@@ -92,7 +92,8 @@ def check_records(data, kind, records):
         require(record.codec == 0 or record.raw_length < 1032 * (record.stored_length + 1), 3011)
         require(not any(data[end:record.offset]), 4002)
         end = record.offset + record.stored_length
-    beside_halvings = {ENVIRONMENT: (b"DESC",), LOCAL: (b"DESC", b"BINS", b"NORM")}
+    beside_halvings = {ENVIRONMENT: (b"DESC",), LOCAL: (b"DESC", b"BINS", b"NORM"),
+                       BRDF: (b"DESC", b"BINS", b"NORM")}
     curves = (b"DESC", b"BINS", b"TREE")
     for wanted in ((b"DESC", b"HALV", b"MAPS") if kind == INDEXED else
                    beside_halvings.get(kind, curves) if b"HALV" in seen else curves):

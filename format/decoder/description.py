@@ -75,7 +75,7 @@ def check_axes(axes):
         require(name and b"\0" not in name and is_utf8(name), 5011)
         require(all(other.name != name for other in axes[:i]), 5011)
         require(axis.role <= 1, 5012)
-        require(axis.measure <= 1, 5013)
+        require(axis.measure <= 2, 5013)
         require(1 <= axis.resolution <= 2147483647, 5014)
         require(axis.reserved == 0, 5008)
         require(math.isfinite(axis.low) and math.isfinite(axis.high) and axis.low != axis.high, 5015)

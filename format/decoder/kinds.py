@@ -27,16 +27,16 @@ def sampler_of(container, d):
     chunks, kind = container.payloads, container.kind
     if b"HALV" in chunks:
         require(b"TREE" not in chunks and b"TILE" not in chunks and d.fit == 4, 6035)
-        require(b"BINS" not in chunks or kind == LOCAL, 6035)
+        require(b"BINS" not in chunks or kind in (LOCAL, BRDF), 6035)
         if kind == INDEXED:
             check_indexed_axes(d)
             return Indexed(chunks[b"HALV"], chunks[b"MAPS"], d)
-        if kind == LOCAL:
-            require(len(d.axes) == 3, 7003)
-            tree = Halvings(chunks[b"HALV"], [axis.resolution for axis in d.axes[:2]])
+        if kind in (LOCAL, BRDF):
+            require(kind == BRDF or len(d.axes) == 3, 7003)
+            tree = Halvings(chunks[b"HALV"], [axis.resolution for axis in d.axes if axis.role == 0])
             rows = NormalRows(tree, chunks[b"NORM"], d.bin_count)
             require(all(root < rows.row_count or root == NOT_STORED for root, _ in d.bins), 6026)
-            return Local(tree, d, rows, chunks.get(b"LOCL"))
+            return Local(tree, d, rows, chunks.get(b"LOCL")) if kind == LOCAL else Brdf(tree, d, rows, chunks.get(b"VIEW"))
         return Environment(Halvings(chunks[b"HALV"], [axis.resolution for axis in d.axes]), None, grid_of(d))
     tiles = None
     if b"SUMS" in chunks or b"GRID" in chunks:
@@ -45,7 +45,7 @@ def sampler_of(container, d):
         require(len(d.axes) >= 2, 7003)
         tiles = FastTiles(chunks[b"TILE"], chunks[b"SUMS"], chunks[b"GRID"], d.axes)
     elif b"TILE" in chunks:
-        require(len(d.axes) >= 2, 7003 if kind == LOCAL else 8001)
+        require(len(d.axes) >= 2, 7003)
         tiles = Tiles(chunks[b"TILE"], chunks.get(b"ROWS"), d.axes)
     else:
         require(b"ROWS" not in chunks, 6025)
@@ -57,7 +57,7 @@ def sampler_of(container, d):
         return Local(tree, d, tiles, chunks.get(b"LOCL"), chunks.get(b"PLAC"),
                      chunks.get(b"PORT"))
     if kind == BRDF:
-        return Brdf(tree, d, tiles, chunks.get(b"VIEW"))
+        return Brdf(tree, d, None, chunks.get(b"VIEW"))
     return Table(tree, d.axes, d.bins)
 
 
@@ -65,7 +65,7 @@ def roots_of(kind, d, tiles, tree):
     """§7.2: where paths begin, each with the box by axis that is inherited there."""
     whole = [[0, axis.resolution] for axis in d.axes]
     roots = []
-    if kind == LOCAL or (kind == BRDF and tiles is not None and tiles.roots is None):
+    if kind == LOCAL:
         roots.append((0, whole))
     if tiles is None:
         for root, _ in d.bins:

@@ -38,20 +38,6 @@ const double (*pairs_at(const double* array, std::size_t i))[2] {
     return reinterpret_cast<const double(*)[2]>(array + 2 * i);
 }
 
-// The views of items first to first + n - 1.
-const float (*views_of(const float* wo, std::size_t each, std::size_t first, std::size_t n,
-                       float (&room)[kBatch][3]))[3] {
-    if (each == 1) return vectors_at(wo, first);
-    for (std::size_t i = 0; i < n; ++i) std::memcpy(room[i], wo + 3 * ((first + i) / each), sizeof room[i]);
-    return room;
-}
-
-void report(const acdf::Status& status, AcdfError* error) {
-    if (!error) return;
-    *error = {static_cast<AcdfErrorCode>(status.code), status.rule, status.offset, {}};
-    std::memcpy(error->message, status.message, sizeof status.message);
-}
-
 } // namespace
 
 int acdf_local_batch_sample(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
@@ -90,58 +76,4 @@ int acdf_local_batch_pdf(const AcdfFile* file, const float* normals, size_t each
         batch.pdf(view.at(normals + 3 * j), vectors_at(directions, first), std::min(each, count - first),
                   pdfs + first);
     return 1;
-}
-
-struct AcdfBrdfBatch {
-    acdf::BrdfBatch batch;
-    AcdfBlock block; ///< where this lies
-};
-
-AcdfBrdfBatch* acdf_brdf_batch(const AcdfFile* file, AcdfError* error) {
-    acdf::BrdfBatch made;
-    acdf::Status status;
-    AcdfBrdf brdf;
-    AcdfBlock block = {};
-    if (acdf_brdf(file, &brdf)) {
-        status = acdf::BrdfBatch::prepare(acdf::BrdfView(brdf), made);
-    } else {
-        status.code = acdf::ErrorCode::unsupported;
-        std::memcpy(status.message, "not a BRDF file", sizeof "not a BRDF file");
-    }
-    if (status.ok()) {
-        block = acdf::take_block({}, sizeof(AcdfBrdfBatch));
-        if (!block.data) status.code = acdf::ErrorCode::out_of_memory;
-    }
-    report(status, error);
-    return block.data ? new (block.data) AcdfBrdfBatch{std::move(made), block} : nullptr;
-}
-
-int acdf_brdf_batch_sample(const AcdfBrdfBatch* batch, const float* wo, size_t each, const double* u, size_t count,
-                           float* wi, float* pdfs) {
-    if (each == 0) return 0;
-    float room[kBatch][3];
-    sample_in_batches(count, wi, pdfs, [&](size_t first, size_t n, DirectionSample* drawn) {
-        batch->batch.sample(views_of(wo, each, first, n, room), pairs_at(u, first), n, drawn);
-    });
-    return 1;
-}
-
-int acdf_brdf_batch_pdf(const AcdfBrdfBatch* batch, const float* wo, size_t each, const float* wi, size_t count,
-                        float* pdfs) {
-    if (each == 0) return 0;
-    float room[kBatch][3];
-    for (size_t first = 0; first < count; first += kBatch) {
-        const size_t n = std::min(kBatch, count - first);
-        batch->batch.pdf(views_of(wo, each, first, n, room), vectors_at(wi, first), n, pdfs + first);
-    }
-    return 1;
-}
-
-uint64_t acdf_brdf_batch_bytes(const AcdfBrdfBatch* batch) { return batch->batch.bytes(); }
-
-void acdf_brdf_batch_close(AcdfBrdfBatch* batch) {
-    if (!batch) return;
-    AcdfBlock block = batch->block;
-    batch->~AcdfBrdfBatch();
-    acdf::give_block({}, block);
 }

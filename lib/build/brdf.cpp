@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <numeric>
 #include <stdexcept>
 
 namespace acdf::build {
@@ -63,7 +64,7 @@ std::string option_text(const BrdfFileOptions& options) {
     }
     if (options.diffuse_share > 0.0f) text += "--diffuse-floor " + option_number(options.diffuse_share) + " ";
     if (options.max_weight > 0.0) text += "--max-weight " + option_number(options.max_weight) + " ";
-    if (fit.fit == ACDF_FIT_VARIANCE) return text + (fit.sharing ? "" : "--no-sharing ") + goal_text(fit.goal);
+    if (fit.fit == ACDF_FIT_VARIANCE) return text + goal_text(fit.goal);
     text += "--knots " + std::to_string(fit.phi_segments) + "x" + std::to_string(fit.theta_segments);
     return fit.epsilon > 0.0 ? text + " --eps " + option_number(fit.epsilon) : text;
 }
@@ -111,15 +112,18 @@ std::vector<std::uint8_t> brdf_bytes(const compress::BrdfFit& fit, const BrdfFil
     d.shares = fit.shares;
     d.axes = {{"phi_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, compress::HalfGrid::column_resolution,
                fit.mirrored ? 0.0 : -pi, pi},
-              {"cos_theta_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, compress::HalfGrid::row_resolution, 1.0, 0.0},
+              {"cos_theta_h", ACDF_AXIS_SAMPLED, fit.halved() ? ACDF_MEASURE_HALF : ACDF_MEASURE_LINEAR,
+               fit.halved() ? std::uint32_t{ACDF_HALF_ROWS} : compress::HalfGrid::row_resolution, 1.0, 0.0},
               {"theta_o", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, static_cast<std::uint32_t>(fit.nodes.size()), 0.0,
                0.5 * pi},
               {"phi_o", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, fit.phi_views, -pi, pi}};
     d.chunks.push_back(views_chunk(fit, options.diffuse_share));
-    if (fit.shared())
-        for (compress::Chunk& chunk : compress::shared_chunks(fit.rows)) d.chunks.push_back(std::move(chunk));
     d.metadata = metadata;
-    return compress::store(fit.tree, d, options.codec);
+    if (!fit.halved()) return compress::store(fit.tree, d, options.codec);
+    std::vector<std::uint32_t> roots(fit.bins()); // each bin its own row
+    std::iota(roots.begin(), roots.end(), 0u);
+    d.chunks.push_back(compress::rows_chunk(fit.rows));
+    return compress::store(fit.rows.halvings, roots, d, options.codec);
 }
 
 namespace {

@@ -86,7 +86,7 @@ private:
     compress::Description described(const LocalHalvings& fit, const NormalBins& bins) const {
         compress::Description out = description_of(target_, source_, options_, bins, {});
         out.shares = fit.shares;
-        out.chunks = {compress::normals_chunk(fit),
+        out.chunks = {compress::rows_chunk(fit),
                       compress::local_chunk(static_cast<float>(options_.cosine_share), {})};
         if (options_.mis) out.chunks.push_back(partner_chunk(options_.mis, fit.records, bins));
         return out;

@@ -33,7 +33,7 @@ private:
 
 acdf::ProductOptions options(int parts = 64) { return {parts, acdf_product_vectors()}; }
 
-acdf::BrdfLobe lobe_of(const AcdfBrdf& brdf) { return acdf::BrdfLobe(brdf, acdf_product_vectors()); }
+acdf::BrdfLobe lobe_of(const AcdfBrdf& brdf) { return acdf::BrdfLobe(brdf); }
 
 template <class AnyLobe>
 void at(const AcdfLocal& light, const AnyLobe& lobe, int parts, const float frame[9], const float wo[3],

@@ -4,8 +4,6 @@
 namespace acdf::python {
 namespace {
 
-constexpr std::size_t kBatchesPay = 4096; // items in an array for which the tables of batches are worth making
-
 AcdfLoadOptions load_options(bool tables) {
     AcdfLoadOptions options = {};
     options.plain = !tables;
@@ -105,12 +103,6 @@ std::unique_ptr<OpenFile> OpenFile::from_bytes(const py::bytes& bytes, bool tabl
     return std::unique_ptr<OpenFile>(new OpenFile(file, bytes));
 }
 
-const AcdfBrdfBatch* OpenFile::batches(std::size_t count) const {
-    if (count < kBatchesPay) return nullptr;
-    std::call_once(asked_, [this] { batch_.reset(acdf_brdf_batch(file(), nullptr)); });
-    return batch_.get(); // null: no memory for them; the loop serves
-}
-
 py::tuple OpenFile::sample(const py::object& condition, const py::object& given, const py::tuple& out) const {
     const AcdfKind kind = acdf_kind(file());
     if (kind == ACDF_KIND_TABLE) return sample_table(condition, given, out);
@@ -123,9 +115,7 @@ py::tuple OpenFile::sample(const py::object& condition, const py::object& given,
     const float* from = at.rows.data();
     {
         const py::gil_scoped_release release;
-        const AcdfBrdfBatch* fast = kind == ACDF_KIND_BRDF ? batches(u.count) : nullptr;
-        if (fast) acdf_brdf_batch_sample(fast, from, at.each, numbers, u.count, w, p);
-        else if (kind == ACDF_KIND_BRDF) acdf_sample_brdf_array(file(), from, at.each, numbers, u.count, w, p);
+        if (kind == ACDF_KIND_BRDF) acdf_sample_brdf_array(file(), from, at.each, numbers, u.count, w, p);
         else if (kind == ACDF_KIND_LOCAL) acdf_local_batch_sample(file(), from, at.each, numbers, u.count, w, p);
         else acdf_sample_environment_array(file(), numbers, u.count, w, p);
     }
@@ -170,9 +160,7 @@ py::array OpenFile::pdf(const py::object& condition, const py::object& given, co
     const float *directions = w.data(), *from = at.rows.data();
     {
         const py::gil_scoped_release release;
-        const AcdfBrdfBatch* fast = kind == ACDF_KIND_BRDF ? batches(w.count) : nullptr;
-        if (fast) acdf_brdf_batch_pdf(fast, from, at.each, directions, w.count, p);
-        else if (kind == ACDF_KIND_BRDF) acdf_pdf_brdf_array(file(), from, at.each, directions, w.count, p);
+        if (kind == ACDF_KIND_BRDF) acdf_pdf_brdf_array(file(), from, at.each, directions, w.count, p);
         else if (kind == ACDF_KIND_LOCAL) acdf_local_batch_pdf(file(), from, at.each, directions, w.count, p);
         else acdf_pdf_environment_array(file(), directions, w.count, p);
     }

@@ -8,7 +8,6 @@
 
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 namespace acdf::python {
@@ -32,17 +31,13 @@ public:
 private:
     struct Close {
         void operator()(AcdfFile* file) const { acdf_close(file); }
-        void operator()(AcdfBrdfBatch* batches) const { acdf_brdf_batch_close(batches); }
     };
 
     explicit OpenFile(AcdfFile* file, py::object keeps) : keeps_(std::move(keeps)), file_(file) {}
-    const AcdfBrdfBatch* batches(std::size_t count) const;
     py::tuple sample_table(const py::object& condition, const py::object& u, const py::tuple& out) const;
 
     py::object keeps_;
     std::unique_ptr<AcdfFile, Close> file_;
-    mutable std::once_flag asked_;
-    mutable std::unique_ptr<AcdfBrdfBatch, Close> batch_; ///< of BRDFs, made for the first large array
 };
 
 /// Adds OpenFile to the module.

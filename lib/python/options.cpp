@@ -176,7 +176,6 @@ BrdfOptions brdf_options(const Options& options) {
     BrdfOptions out;
     out.channels = channels_of(options);
     out.goal = goal_of(options, out.goal);
-    options.take("sharing", out.sharing);
     options.take("theta_views", out.theta_views);
     options.take("phi_views", out.phi_views);
     options.take("max_weight", out.max_weight);

@@ -128,12 +128,11 @@ bool make_halved(const Parts& parts, bool lookup, AcdfFile& file) noexcept {
 }
 
 #ifndef ACDF_ENVIRONMENT_ONLY
-bool make_normals(const Parts& parts, bool lookup, AcdfFile& file) noexcept {
+bool make_rows(const Parts& parts, bool lookup, AcdfFile& file) noexcept {
     const double* heights = acdf_halved_heights(file.environment.halved);
-    const AcdfNormalRows* const rows = make_normal_rows(parts, lookup, heights, file.allocator, file.memory[3]);
-    file.local.rows_of_normals = rows;
-    if (rows) file.table_bytes += 4 * u64{rows->words};
-    return rows != nullptr;
+    file.rows = make_normal_rows(parts, lookup, heights, file.allocator, file.memory[3]);
+    if (file.rows) file.table_bytes += 4 * u64{file.rows->words};
+    return file.rows != nullptr;
 }
 #endif
 
@@ -183,7 +182,7 @@ bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
     if (parts.halvings && !make_halved(parts, options.tables, file))
         return fail(status, 1003, "%llu halvings", ull{parts.halving_count});
 #ifndef ACDF_ENVIRONMENT_ONLY
-    if (parts.normals && !make_normals(parts, options.tables, file))
+    if (parts.normals && !make_rows(parts, options.tables, file))
         return fail(status, 1003, "%llu rows", ull{parts.normals->row_count});
     if (file.kind() != ACDF_KIND_ENVIRONMENT) make_view(parts, options.tables ? &survey : nullptr, file);
 #endif

@@ -3,6 +3,9 @@
 #include "memory.h"
 
 #include <acdf/sample.h>
+#ifndef ACDF_ENVIRONMENT_ONLY
+#include <acdf/brdf_half.h>
+#endif
 
 #include <cstring>
 
@@ -137,7 +140,10 @@ private:
 
 u32 position_scale(u32 resolution, u32 bits) { return static_cast<u32>((u64{1} << (32 + bits)) / resolution); }
 
-bool is_latlong(const HalvedSource& source) { return source.parameterization == ACDF_PARAM_LATLONG; }
+// Whether rows begin elsewhere than at equal steps.
+bool has_heights(const HalvedSource& source) {
+    return source.parameterization == ACDF_PARAM_LATLONG || source.parameterization == ACDF_PARAM_HALF_ANGLE;
+}
 
 // A square for one to four cells.
 u32 lookup_bits(const HalvedSource& source) {
@@ -163,7 +169,7 @@ Layout layout_of(const HalvedSource& source, u32 bits, u32 starts) {
     out.nodes = to_line(words_in(sizeof(AcdfHalvedTree)));
     out.heights = to_line(out.nodes + words_in(source.count * sizeof(AcdfHalving)));
     out.numbers =
-        to_line(out.heights + (is_latlong(source) ? words_in((source.resolution[1] + std::size_t{1}) * 8) : 0));
+        to_line(out.heights + (has_heights(source) ? words_in((source.resolution[1] + std::size_t{1}) * 8) : 0));
     out.positions = out.numbers + grid;
     out.starts = to_line(out.positions + grid);
     out.words = out.starts + words_in(starts * sizeof(AcdfStart));
@@ -172,7 +178,12 @@ Layout layout_of(const HalvedSource& source, u32 bits, u32 starts) {
 
 void make_heights(AcdfHalvedTree* tree, const HalvedSource& source) {
     double* heights = at_word<double>(tree, tree->heights);
-    for (u32 row = 0; row <= source.resolution[1]; ++row) heights[row] = acdf_row_z(row, source.resolution[1]);
+    for (u32 row = 0; row <= source.resolution[1]; ++row)
+#ifndef ACDF_ENVIRONMENT_ONLY
+        if (source.parameterization == ACDF_PARAM_HALF_ANGLE) heights[row] = acdf_half_row(row);
+        else
+#endif
+            heights[row] = acdf_row_z(row, source.resolution[1]);
 }
 
 } // namespace
@@ -204,7 +215,7 @@ AcdfHalvedTree* make_halved_tree(const HalvedSource& source, const AcdfAllocator
     tree->nodes = static_cast<u32>(layout.nodes);
     if (source.count)
         std::memcpy(at_word<AcdfHalving>(tree, layout.nodes), source.nodes, source.count * sizeof(AcdfHalving));
-    if (is_latlong(source)) {
+    if (has_heights(source)) {
         tree->heights = static_cast<u32>(layout.heights);
         make_heights(tree, source);
     }

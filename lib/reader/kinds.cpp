@@ -1,7 +1,6 @@
 // The views of local environments, BRDFs and tables.
 #include "check/check.h"
 #include "opened_file.h"
-#include "tables/brdf.h"
 #include "tables/indexed.h"
 #include "tables/local.h"
 #include "tables/table_entries.h"
@@ -37,7 +36,7 @@ void make_local(const Parts& parts, bool tables, AcdfFile& file) {
     local.environment.parameterization = description.parameterization;
     local.environment.tree_units = parts.tree_units;
     local.environment.halved = file.environment.halved;
-    local.rows_of_normals = file.local.rows_of_normals;
+    local.rows_of_normals = file.rows;
     local.partner = parts.partner;
     local.bins = parts.bins;
     local.bright_tiles = parts.bright_tiles;
@@ -59,19 +58,16 @@ void make_local(const Parts& parts, bool tables, AcdfFile& file) {
     if (local.fast.grid && local.tables) acdf_local_use_upper(&local);
 }
 
-void make_brdf(const Parts& parts, bool tables, AcdfFile& file) {
-    file.brdf = {file.blend,
+void make_brdf(const Parts& parts, AcdfFile& file) {
+    file.brdf = {file.environment.halved,
+                 file.rows,
                  parts.tree,
                  parts.bins,
                  parts.views,
                  parts.nodes,
                  parts.axes[0].resolution,
-                 parts.axes[1].resolution,
-                 parts.description->total,
-                 nullptr};
-    if (tables && can_have_tables(file.brdf))
-        file.brdf.tables =
-            keep(make_brdf_tables(file.brdf, most_table_bytes(file), true, file.allocator, file.memory[2]), file);
+                 parts.halvings ? ACDF_HALF_STEPS : parts.axes[1].resolution,
+                 parts.description->total};
 }
 
 void make_table(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) {
@@ -92,7 +88,7 @@ void make_view(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) noe
     file.blend = {parts.tiles, parts.splits, parts.tile_roots, parts.rows, parts.tree};
     file.fast = parts.fast;
     if (file.kind() == ACDF_KIND_LOCAL) make_local(parts, survey != nullptr, file);
-    if (file.kind() == ACDF_KIND_BRDF) make_brdf(parts, survey != nullptr, file);
+    if (file.kind() == ACDF_KIND_BRDF) make_brdf(parts, file);
     if (file.kind() == ACDF_KIND_TABLE) make_table(parts, survey, file);
 }
 

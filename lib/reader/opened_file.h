@@ -25,10 +25,11 @@ struct AcdfFile {
     AcdfBrdf brdf;
     AcdfTable table;
     AcdfIndexed indexed;
+    const AcdfNormalRows* rows; ///< of normals or views; null: none
 #endif
     AcdfAllocator allocator; ///< which gave what follows
     AcdfBlock own;           ///< where this lies
-    AcdfBlock memory[4];     ///< the file's bytes; inflated chunks; runtime tables; those of rows of normals
+    AcdfBlock memory[4];     ///< the file's bytes; inflated chunks; runtime tables; those of rows of halvings
 
     AcdfKind kind() const { return static_cast<AcdfKind>(reinterpret_cast<const AcdfHeader*>(bytes)->kind); }
 };

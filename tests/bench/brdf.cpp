@@ -1,6 +1,6 @@
-// Time of a sample and of a pdf of measured BRDFs: files of ours, one call at a time and in batches, beside the
-// sampler that the authors of the RGL database publish, the full table, an alias table and a hierarchical warp of
-// tabulated slices, and a GGX lobe. Each call has another view, another direction and other random numbers.
+// Time of a sample and of a pdf of measured BRDFs: files of ours beside the sampler that the authors of the RGL
+// database publish, the full table, an alias table and a hierarchical warp of tabulated slices, and a GGX lobe.
+// Each call has another view, another direction and other random numbers.
 //
 //   bench_brdf [KIB...]                            tables in Markdown; 64 and 128 by default
 //   bench_brdf --write FILE KIB                    a file of the first BRDF
@@ -13,8 +13,6 @@
 #include "measure/samplers/brdf_samplers.h"
 #include "measure/samplers/brdf_table.h"
 #include "measure/samplers/rgl_sampler.h"
-
-#include <acdf/batch/batch.h>
 
 #include <cmath>
 #include <cstdio>
@@ -145,45 +143,6 @@ Sampler of_view(const std::string& name, const BrdfView& view) {
             each([view](const Query& q) { return view.pdf(q.wo, q.wi); })};
 }
 
-/// All queries, in arrays as BrdfBatch takes them.
-struct QueryArrays {
-    std::vector<float> wo, wi;
-    std::vector<double> u;
-    QueryArrays() {
-        for (const Query& q : queries()) {
-            wo.insert(wo.end(), q.wo, q.wo + 3);
-            wi.insert(wi.end(), q.wi, q.wi + 3);
-            u.insert(u.end(), q.u, q.u + 2);
-        }
-    }
-    static const float (*vectors(const std::vector<float>& all, std::size_t first))[3] {
-        return reinterpret_cast<const float(*)[3]>(&all[3 * first]);
-    }
-    const double (*numbers(std::size_t first) const)[2] {
-        return reinterpret_cast<const double(*)[2]>(&u[2 * first]);
-    }
-};
-const QueryArrays& query_arrays() {
-    static const QueryArrays made;
-    return made;
-}
-
-Sampler of_batches(const std::string& name, const BrdfBatch& batch) {
-    static std::vector<DirectionSample> samples(kBatch);
-    static std::vector<float> pdfs(kBatch);
-    return {name,
-            [&batch](std::size_t first, std::size_t count) {
-                batch.sample(QueryArrays::vectors(query_arrays().wo, first), query_arrays().numbers(first), count,
-                             samples.data());
-                keep(samples[0]);
-            },
-            [&batch](std::size_t first, std::size_t count) {
-                batch.pdf(QueryArrays::vectors(query_arrays().wo, first),
-                          QueryArrays::vectors(query_arrays().wi, first), count, pdfs.data());
-                keep(pdfs[0]);
-            }};
-}
-
 std::vector<double> times(const std::vector<Sampler>& samplers, bool of_pdfs, bool evict) {
     std::vector<Candidate> candidates;
     for (const Sampler& s : samplers) candidates.push_back({s.name, of_pdfs ? s.pdf : s.sample});
@@ -227,19 +186,11 @@ void run(const std::string& source, const std::vector<std::uint64_t>& sizes) {
     samplers.push_back(in_floats("hierarchical warp", warp));
     samplers.push_back(in_doubles("GGX lobe", ggx));
     std::vector<std::unique_ptr<Built>> built;
-    std::vector<std::unique_ptr<BrdfBatch>> batches;
     for (const std::uint64_t kib : sizes) {
         built.push_back(std::make_unique<Built>(*brdf, kib << 10));
         const std::string size = std::to_string(kib) + " KiB";
         samplers.push_back(of_view(size, built.back()->tables.brdf()));
         samplers.push_back(of_view(size + ", no tables", built.back()->plain.brdf()));
-        for (const Instructions most : {Instructions::avx2, Instructions::avx512}) {
-            batches.push_back(std::make_unique<BrdfBatch>());
-            BrdfBatch::prepare(built.back()->tables.brdf(), *batches.back(), most);
-            if (batches.back()->instructions() == most)
-                samplers.push_back(
-                    of_batches(size + (most == Instructions::avx2 ? ", AVX2" : ", AVX-512"), *batches.back()));
-        }
         std::printf("\n%s, %s: tables of %llu bytes\n", source.c_str(), size.c_str(),
                     static_cast<unsigned long long>(built.back()->tables.table_bytes()));
     }

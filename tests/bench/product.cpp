@@ -187,7 +187,7 @@ int main(int argc, char** argv) {
     const std::vector<ShadingPoint> all = shading_points();
     std::vector<Timed> timed;
     add(light.local().data(), measure::GgxLobe(0.3), "GGX lobe", all, timed);
-    add(light.local().data(), BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), "BRDF file", all, timed);
+    add(light.local().data(), BrdfLobe(brdf.brdf().data()), "BRDF file", all, timed);
     for (int turn = 0; turn < 40; ++turn)
         for (Timed& one : timed) {
             one.run(); // what another one left in the caches is not timed

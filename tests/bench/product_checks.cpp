@@ -230,7 +230,7 @@ int main(int argc, char** argv) {
     constexpr int pairs = 200;
     const AcdfLocal data = light.local().data();
     const Counts c = lobe ? check(data, measure::GgxLobe(std::atof(argv[2]), std::atof(argv[3])), pairs)
-                          : check(data, BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), pairs);
+                          : check(data, BrdfLobe(brdf.brdf().data()), pairs);
     std::printf("| %d | %.1g | %d | %d | %d |\n", pairs, c.worst_integral, c.disagree, c.violations, c.beyond);
     return c.worst_integral > 1e-4 || c.disagree > 0 || c.violations > 0 || c.beyond > 1 ? 1 : 0;
 }

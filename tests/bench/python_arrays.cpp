@@ -33,8 +33,7 @@ int main(int argc, char** argv) {
         if (argc != 4 || !acdf::File::open(argv[i + 1], files[i]).ok()) return std::fprintf(stderr, "no file\n"), 1;
     const auto sky = files[0].environment();
     const acdf::LocalBatch local(files[1].local());
-    acdf::BrdfBatch brdf;
-    if (!acdf::BrdfBatch::prepare(files[2].brdf(), brdf).ok()) return 1;
+    const acdf::BrdfView brdf = files[2].brdf();
 
     struct Vector {
         float v[3];
@@ -68,7 +67,12 @@ int main(int argc, char** argv) {
     std::printf("local.sample %.1f\n", nanoseconds([&] { local.sample(views, numbers, kCalls, sampled.data()); }));
     keep();
     std::printf("local.pdf %.1f\n", nanoseconds([&] { local.pdf(views, towards, kCalls, pdf.data()); }));
-    std::printf("brdf.sample %.1f\n", nanoseconds([&] { brdf.sample(views, numbers, kCalls, sampled.data()); }));
+    std::printf("brdf.sample %.1f\n", nanoseconds([&] {
+                    for (std::size_t i = 0; i < kCalls; ++i)
+                        sampled[i] = brdf.sample(views[i], numbers[i][0], numbers[i][1]);
+                }));
     keep();
-    std::printf("brdf.pdf %.1f\n", nanoseconds([&] { brdf.pdf(views, towards, kCalls, pdf.data()); }));
+    std::printf("brdf.pdf %.1f\n", nanoseconds([&] {
+                    for (std::size_t i = 0; i < kCalls; ++i) pdf[i] = brdf.pdf(views[i], towards[i]);
+                }));
 }

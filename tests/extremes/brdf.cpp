@@ -1,5 +1,4 @@
 // BRDFs at their ends: mirrors, nothing but diffuse, light at grazing angles alone, and views that graze.
-#include "tests/lib/batch/brdf.h"
 #include "tests/inputs/brdf_files.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
@@ -107,10 +106,6 @@ TEST_P(ExtremeBrdfs, SamplesAreSoundForEveryView) {
                 ASSERT_TRUE(std::isfinite(brdf_->reflected(o, w) / s.pdf)) << cosine;
             }
         }
-}
-
-TEST_P(ExtremeBrdfs, BatchesAreTheSameBitForBit) {
-    expect_batch_is_the_view(brdf_->view(), std::size_t(repeated(20000)));
 }
 
 TEST_P(ExtremeBrdfs, EstimatesHaveTheRightMean) {

@@ -40,16 +40,6 @@ struct FuzzQueries {
     }
 };
 
-inline void batch_is_the_view(const acdf::BrdfView& view, FuzzRandom& random) {
-    acdf::BrdfBatch batch;
-    require(acdf::BrdfBatch::prepare(view, batch).ok());
-    FuzzQueries asked(random, true);
-    batch.sample(asked.first, asked.u, samples_a_file, asked.samples);
-    batch.pdf(asked.first, asked.second, samples_a_file, asked.pdfs);
-    asked.require_single([&](int n) { return view.sample(asked.first[n], asked.u[n][0], asked.u[n][1]); },
-                         [&](int n) { return view.pdf(asked.first[n], asked.second[n]); });
-}
-
 /// Of a normal each, and of one shading point.
 inline void local_batch_is_the_view(const acdf::LocalEnvironmentView& view, FuzzRandom& random) {
     const auto most = random.below(2) == 0 ? acdf::Instructions::avx2 : acdf::Instructions::avx512;

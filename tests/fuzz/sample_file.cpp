@@ -105,7 +105,6 @@ void sample_everything(const acdf::BrdfView& view, FuzzRandom& random) {
         if (view.invert(wo, s.direction, u)) require(in_unit_square(u));
         if (view.invert(wo, any, u)) require(in_unit_square(u));
     }
-    batch_is_the_view(view, random);
 }
 
 void sample_everything(const acdf::TableView& view, FuzzRandom& random) {

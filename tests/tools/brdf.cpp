@@ -58,19 +58,6 @@ TEST(BrdfCommand, compressedFilesFillTheirBudget) {
     EXPECT_NE(run_acdf({"info", path}).out.find("--budget 9000"), std::string::npos);
 }
 
-TEST(BrdfCommand, treesOfTheirOwnKeepTheirBudget) {
-    ACDF_NOT_SANITIZED();
-    const Folder folder;
-    const std::string path = folder / "a.acdf";
-    for (const auto& [codec, budget] : {std::pair{"zlib", 16384u}, {"none", 4096u}}) {
-        const Result made = run_acdf({"brdf", "lambert", "-f", "-o", path, "--views", "4", "--no-sharing",
-                                      "--budget", std::to_string(budget), "--compress", codec});
-        ASSERT_EQ(made.code, 0) << made.err;
-        EXPECT_LE(std::filesystem::file_size(path), budget);
-        EXPECT_GE(std::filesystem::file_size(path), budget - budget / 10);
-    }
-}
-
 TEST(BrdfCommand, measureComparesWithOtherSamplers) {
     const Result measured = run_acdf({"measure", small_file(), "--against", "ggx:alpha=0.4", "--json"});
     ASSERT_EQ(measured.code, 0) << measured.err;

@@ -29,7 +29,6 @@ builder::BrdfOptions options_of(const Step& step, const input::Brdf& brdf, const
     out.source.sha256 = brdf.sha256;
     out.channels = sweep.target.channels;
     out.goal = builder::Goal::of_budget(step.budget);
-    out.sharing = step.file == "variance";
     if (step.file != "cdf" && step.file != "uniform") return out;
     out.fit = step.file == "cdf" ? ACDF_FIT_CDF : ACDF_FIT_UNIFORM;
     // Three segments in theta_h for one in phi_h, as in Lawrence et al. 2005, §6.2.
@@ -50,15 +49,13 @@ std::vector<Step> steps_of(const SweepOptions& options) {
 
 std::string text_of(const Step& step, const builder::BrdfOptions& o) {
     if (step.file == "variance") return "--budget " + budget_text(step.budget);
-    if (step.file == "separate") return "--no-sharing --budget " + budget_text(step.budget);
     return "--fit " + step.file + " " + knots_text(o.phi_segments, o.theta_segments);
 }
 
 const char* brdf_label(const std::string& fit) {
-    return fit == "variance"   ? "shared cells (default)"
-           : fit == "separate" ? "a tree for each view"
-           : fit == "cdf"      ? "cdf fit (the paper's)"
-                               : "uniform knots";
+    return fit == "variance" ? "a tree of halvings (default)"
+           : fit == "cdf"    ? "cdf fit (the paper's)"
+                             : "uniform knots";
 }
 
 /// In double precision, for any view.
@@ -195,7 +192,7 @@ void add_sobol(const compress::Reflected& reflected, const std::vector<SampledPo
 } // namespace
 
 const std::vector<std::string>& brdf_files() {
-    static const std::vector<std::string> names{"variance", "separate", "cdf", "uniform"};
+    static const std::vector<std::string> names{"variance", "cdf", "uniform"};
     return names;
 }
 

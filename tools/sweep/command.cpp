@@ -336,7 +336,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
                            "Kinds of files to try, separated by commas. Probes: env, env-mis (--mis mean), "
                            "local, local-mis (--mis cosine), visibility (with --scene), local-fast, "
                            "local-separate, local-cdf, env-cdf, env-pdf, env-uniform; BRDFs: variance, "
-                           "separate, cdf, uniform"))
+                           "cdf, uniform"))
         ->option_text("NAMES [env,env-mis,local,local-mis; BRDFs: all]")
         ->group("Sweep");
     comma_separated(command.add_option("--budgets", options.budgets, "Sizes of each kind, separated by commas"))

@@ -5,7 +5,6 @@
 #include "compress/parallel.h"
 #include "compress/sum.h"
 
-#include <acdf/batch/batch.h>
 #include <acdf/sample.h>
 
 #include <algorithm>
@@ -129,29 +128,6 @@ void for_each_half_vector(const compress::View& view, const double wo[3], std::u
     for_some_half_vectors(view, wo, columns, columns, rows, visit);
 }
 
-/// The pdfs of a file, bit for bit those of its BrdfView: of several directions at once, by vectors where they
-/// serve.
-class StoredPdfs {
-public:
-    explicit StoredPdfs(const File& file) : brdf_(file.brdf().data()) {
-        if (!brdf_.tables || !brdf_.tables->grid) return; // a batch would look up the view for each direction
-        if (!BrdfBatch::prepare(file.brdf(), batch_).ok()) throw std::bad_alloc();
-    }
-    /// Of wi[i] into out[i], i < count; all of wo[i] are the one of `view`.
-    void of(const AcdfBrdfView& view, const float (*wo)[3], const float (*wi)[3], std::size_t count,
-            float* out) const {
-        if (batch_.instructions() != Instructions::none) batch_.pdf(wo, wi, count, out);
-        else brdf_pdf_batch(brdf_, view, wi, count, out);
-    }
-    const AcdfBrdf& brdf() const { return brdf_; }
-    /// Whether both sides of all views have the same pdfs.
-    bool mirrored() const { return acdf_brdf_mirrored(&brdf_) && brdf_.views->phi_count == 1; }
-
-private:
-    AcdfBrdf brdf_;
-    BrdfBatch batch_;
-};
-
 double light_above(const compress::Reflected& reflected, const double wo[3], const double wi[3]) {
     return wi[2] > 0.0 ? reflected(wo, wi) : 0.0;
 }
@@ -209,33 +185,26 @@ std::vector<double> relative_variances(const std::vector<ViewPdf>& densities, co
 std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflected& reflected,
                                         const std::vector<compress::View>& views, Sides sides,
                                         std::uint32_t columns, std::uint32_t rows) {
-    struct Place {
-        double wi[3], measure;
-    };
-    const StoredPdfs stored(file);
+    const AcdfBrdf brdf = file.brdf().data();
+    const bool both = acdf_brdf_mirrored(&brdf) && brdf.views->phi_count == 1; // sides of views have the same pdfs
     // The last one visited is its own mirror image where columns are odd.
-    const std::uint32_t visited = sides == Sides::alike && stored.mirrored() ? (columns + 1) / 2 : columns;
+    const std::uint32_t visited = sides == Sides::alike && both ? (columns + 1) / 2 : columns;
     const auto images = [&](std::uint32_t c) { return visited == columns || 2 * c + 1 == columns ? 1u : 2u; };
     std::vector<ViewAccuracy> out(views.size());
     compress::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
         double wo[3];
         views[v].direction(wo);
-        const auto o = std::make_unique<float[][3]>(visited), i = std::make_unique<float[][3]>(visited);
-        for (std::uint32_t c = 0; c < visited; ++c) rounded(wo, o[c]);
+        float o[3], i[3];
+        rounded(wo, o);
         AcdfBrdfView view; // looked up once
-        const bool seen = acdf_brdf_view(&stored.brdf(), o[0], &view) != 0;
+        const bool seen = acdf_brdf_view(&brdf, o, &view) != 0;
         ViewSums sums;
-        std::vector<Place> row;
-        std::vector<float> p(visited, 0.0f);
+        std::uint32_t column = 0;
         for_some_half_vectors(views[v], wo, columns, visited, rows, [&](const double wi[3], double measure) {
-            rounded(wi, i[row.size()]);
-            row.push_back({{wi[0], wi[1], wi[2]}, measure});
-            if (row.size() < visited) return;
-            if (seen) stored.of(view, o.get(), i.get(), visited, p.data());
-            for (std::uint32_t c = 0; c < visited; ++c)
-                sums.add(light_above(reflected, wo, row[c].wi), double{p[c]}, images(c) * row[c].measure,
-                         row[c].wi[2], images(c));
-            row.clear();
+            rounded(wi, i);
+            const double p = seen ? double{acdf_brdf_view_pdf(&brdf, &view, i)} : 0.0;
+            sums.add(light_above(reflected, wo, wi), p, images(column) * measure, wi[2], images(column));
+            column = column + 1 < visited ? column + 1 : 0;
         });
         out[v] = sums.result();
         out[v].view = views[v];
@@ -312,7 +281,7 @@ BrdfAccuracy summary(const std::vector<ViewAccuracy>& views) {
 }
 
 std::uint64_t brdf_cells(const File& file) {
-    if (file.blend().tiles) return file.blend().tiles->tile_count;
+    if (const AcdfHalvedTree* halved = file.brdf().data().halved) return halved->count + std::uint64_t{1};
     std::uint64_t cells = 0;
     for (std::uint32_t b = 0; b < file.description().bin_count; ++b)
         for_each_cell(file, file.bin(b).root, [&](const Cell&) { ++cells; });

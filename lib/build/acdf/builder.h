@@ -333,18 +333,15 @@ Status tabulated(const Array& table, Brdf& brdf) noexcept;
 /// How a BRDF is fitted and stored.
 struct BrdfOptions {
     Channels channels;
-    Goal goal; ///< of the variance fit; cells: that views share, or of each, up to ACDF_MAX_TILES
+    Goal goal; ///< of the variance fit; cells: of each view, up to ACDF_MAX_TILES
+    /// Variance: views share a tree and are interpolated. Else each view has a tree, and the nearest serves.
     AcdfFit fit = ACDF_FIT_VARIANCE;
-    /// Of the variance fit: views share cells and are interpolated. Else each view has a tree, and the nearest
-    /// serves.
-    bool sharing = true;
     /// Stored views, 2 to 1024 in theta_o, and 1 or 4 to 1024 in phi_o; 0: as suits the size.
     std::uint32_t theta_views = 0, phi_views = 0;
     std::uint32_t phi_segments = 10, theta_segments = 30; ///< cdf, pdf, uniform: of curves over phi_h and theta_h
     double epsilon = 0.0;                                 ///< cdf, pdf: see FitOptions
     float diffuse_share = 0.0f;                           ///< of samples that follow the cosine, in [0, 0.99]
-    double max_weight =
-        0.0; ///< with sharing: the largest measured weight, at least 1; 0: what costs next to nothing
+    double max_weight = 0.0; ///< variance: the largest measured weight, at least 1; 0: what costs next to nothing
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source; ///< name and sha256
 };

@@ -217,8 +217,7 @@ void check(const BrdfOptions& options) {
     check_segments(options.phi_segments, options.theta_segments, options.epsilon);
     require(is_share(double{options.diffuse_share}, 0.99f), "diffuse_share is not in [0, 0.99]");
     check_max_weight(options.max_weight);
-    require(options.max_weight == 0.0 || (options.fit == ACDF_FIT_VARIANCE && options.sharing),
-            "max_weight is for the variance fit of views that share cells");
+    require(options.max_weight == 0.0 || options.fit == ACDF_FIT_VARIANCE, "max_weight is for the variance fit");
     if (options.fit != ACDF_FIT_VARIANCE) return;
     check(options.goal, 1);
     require(options.goal.kind != Goal::Kind::cells || options.goal.cells <= ACDF_MAX_TILES,

@@ -194,7 +194,6 @@ build::LocalOptions internal(const LocalOptions& options) {
 build::BrdfFileOptions internal(const BrdfOptions& options) {
     build::BrdfFileOptions out;
     out.fit.fit = options.fit;
-    out.fit.sharing = options.sharing;
     out.fit.goal = internal(options.goal, DefaultBudget::brdf);
     out.fit.theta_views = options.theta_views;
     out.fit.phi_views = options.phi_views;

@@ -32,7 +32,8 @@ constexpr Name fits[] = {
 constexpr Name filters[] = {{ACDF_FILTER_NEAREST, "nearest"}, {ACDF_FILTER_BILINEAR, "bilinear"}};
 constexpr Name codecs[] = {{ACDF_CODEC_NONE, "none"}, {ACDF_CODEC_ZLIB, "zlib"}, {ACDF_CODEC_PLANES, "planes"}};
 constexpr Name roles[] = {{ACDF_AXIS_SAMPLED, "sampled"}, {ACDF_AXIS_INDEXED, "indexed"}};
-constexpr Name measures[] = {{ACDF_MEASURE_LINEAR, "linear"}, {ACDF_MEASURE_COSINE, "cosine"}};
+constexpr Name measures[] = {
+    {ACDF_MEASURE_LINEAR, "linear"}, {ACDF_MEASURE_COSINE, "cosine"}, {ACDF_MEASURE_HALF, "half"}};
 
 } // namespace
 

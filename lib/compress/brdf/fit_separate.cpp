@@ -1,6 +1,6 @@
 #include "compress/brdf/fit_separate.h"
 
-#include "compress/fit/tree.h"
+#include "compress/fit/fit.h"
 #include "compress/no_energy.h"
 #include "compress/parallel.h"
 
@@ -118,27 +118,6 @@ Cascade fit_each(const std::vector<Target>& targets, const HalfGrid& grid, const
     return out;
 }
 
-EncodedTree fit_variance(const std::vector<Target>& targets, const HalfGrid& grid, const BrdfOptions& options,
-                         BrdfFit& empty) {
-    FitOptions fit;
-    fit.goal = options.goal;
-    if (fit.goal.kind == Goal::Kind::cells)
-        fit.goal.cells = static_cast<std::uint32_t>(
-            std::min<std::uint64_t>(std::uint64_t{options.goal.cells} * targets.size(), std::uint64_t{0xFFFFFFFF}));
-    // Positions of the file take up to four bytes where the steps of the grid take two: only placed curves show it.
-    const auto placed = [&](Cascade cascade) {
-        place_knots(cascade, grid);
-        return encode_tree(cascade);
-    };
-    fit.cascade_size = [&](const Cascade& cascade) {
-        empty.tree = placed(cascade);
-        return options.file_size(empty);
-    };
-    std::vector<Grid> grids;
-    for (const Target& target : targets) grids.push_back(grid_of(target));
-    return placed(fit_trees(grids, fit).cascade);
-}
-
 } // namespace
 
 BrdfFit fit_separate(const Reflected& reflected, const BrdfOptions& options) {
@@ -160,8 +139,7 @@ BrdfFit fit_separate(const Reflected& reflected, const BrdfOptions& options) {
     if (!(out.total > 0.0))
         throw NoEnergy("it reflects nothing to any view looked at, so there is nothing to sample");
     for (const double a : albedo) out.shares.push_back(static_cast<float>(std::max(a / out.total, kLeastShare)));
-    if (options.fit == ACDF_FIT_VARIANCE) out.tree = fit_variance(targets, grid, options, out);
-    else out.tree = encode_tree(fit_each(targets, grid, options));
+    out.tree = encode_tree(fit_each(targets, grid, options));
     return out;
 }
 

@@ -5,7 +5,7 @@
 
 namespace acdf::compress {
 
-/// The fit without anything shared, for comparison and for the fits uniform, cdf and pdf. Bins are of equal angle.
+/// The fits uniform, cdf and pdf: nothing is shared. Bins are of equal angle.
 BrdfFit fit_separate(const Reflected& reflected, const BrdfOptions& options);
 
 } // namespace acdf::compress

@@ -2,11 +2,12 @@
 
 #include "compress/sum.h"
 
-#include <acdf/sample.h>
+#include <acdf/brdf.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace acdf::compress {
 namespace {
@@ -64,19 +65,40 @@ void View::direction(double out[3]) const {
     out[2] = cosine();
 }
 
-HalfGrid::HalfGrid(std::uint32_t columns, std::uint32_t rows, bool mirrored_) : mirrored(mirrored_) {
+namespace {
+
+std::vector<std::uint32_t> rows_of_roots(std::uint32_t rows) {
+    std::vector<std::uint32_t> out{0};
+    for (std::uint32_t r = 1; r <= rows; ++r) {
+        const double t = double(r) / rows, sine = std::sin(0.25 * ACDF_PI * t * t);
+        const auto knot = static_cast<std::uint32_t>(std::lround(2.0 * sine * sine * HalfGrid::row_resolution));
+        if (knot > out.back()) out.push_back(knot);
+    }
+    out.back() = HalfGrid::row_resolution;
+    return out;
+}
+
+std::vector<std::uint32_t> halved_rows(std::uint32_t rows) {
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t r = 0; r <= rows; ++r) out.push_back(acdf_half_row(r * (ACDF_HALF_ROWS / rows)));
+    return out;
+}
+
+} // namespace
+
+HalfGrid::HalfGrid(std::uint32_t columns, std::uint32_t rows, bool mirrored_)
+    : HalfGrid(columns, rows_of_roots(rows), mirrored_) {}
+
+HalfGrid HalfGrid::halved(std::uint32_t columns, std::uint32_t rows, bool mirrored) {
+    return {columns, halved_rows(rows), mirrored};
+}
+
+HalfGrid::HalfGrid(std::uint32_t columns, std::vector<std::uint32_t> rows, bool mirrored_)
+    : mirrored(mirrored_), row_knots(std::move(rows)) {
     for (std::uint32_t c = 0; c <= columns; ++c)
         column_knots.push_back(static_cast<std::uint32_t>(std::uint64_t{c} * column_resolution / columns));
     for (std::uint32_t c = 0; c < columns; ++c)
         column_measure.push_back(2.0 * ACDF_PI * (column_knots[c + 1] - column_knots[c]) / column_resolution);
-    row_knots.push_back(0);
-    for (std::uint32_t r = 1; r <= rows; ++r) {
-        // theta_h in steps of its square root, as published measurements tabulate it.
-        const double t = double(r) / rows, sine = std::sin(0.25 * ACDF_PI * t * t);
-        const auto knot = static_cast<std::uint32_t>(std::lround(2.0 * sine * sine * row_resolution));
-        if (knot > row_knots.back()) row_knots.push_back(knot);
-    }
-    row_knots.back() = row_resolution;
     for (std::size_t r = 0; r + 1 < row_knots.size(); ++r)
         row_measure.push_back(double(row_knots[r + 1] - row_knots[r]) / row_resolution);
     for (const std::uint32_t knot : row_knots) edges.push_back(latitude(knot));
@@ -105,6 +127,11 @@ ViewTarget view_target(const Reflected& reflected, const HalfGrid& grid, const V
     }
     Sum albedo;
     for (std::uint32_t r = 0; r < grid.rows(); ++r) {
+        if (grid.is_thin(r)) { // as the row before it
+            const auto row = values.begin() + std::ptrdiff_t(std::size_t{r} * grid.columns());
+            std::copy_n(row - grid.columns(), grid.columns(), row);
+            continue;
+        }
         const auto [hz, radius] = grid.middles[r];
         for (std::uint32_t c = 0; c < grid.columns(); ++c) {
             const double h[3] = {radius * cosine[c], radius * sine[c], hz};

@@ -37,7 +37,11 @@ struct Latitude {
 struct HalfGrid {
     static constexpr std::uint32_t column_resolution = 1u << 16, row_resolution = 1u << 28;
 
+    /// Rows are equal steps of the root of theta_h, as published measurements tabulate it.
     HalfGrid(std::uint32_t columns, std::uint32_t rows, bool mirrored);
+    /// Rows are those of a tree of halvings (ACDF_HALF_ROWS), or as many of them together as make `rows`, a power
+    /// of two. So are columns.
+    static HalfGrid halved(std::uint32_t columns, std::uint32_t rows, bool mirrored);
 
     bool mirrored;                           ///< columns cover [0, pi], else [-pi, pi]
     std::vector<std::uint32_t> column_knots; ///< columns + 1
@@ -50,9 +54,16 @@ struct HalfGrid {
     std::uint32_t columns() const { return static_cast<std::uint32_t>(column_measure.size()); }
     std::uint32_t rows() const { return static_cast<std::uint32_t>(row_measure.size()); }
     std::size_t size() const { return column_measure.size() * row_measure.size(); }
+    /// Whether a row is looked at as the one before it: of those at the pole of a tree of halvings few are.
+    bool is_thin(std::uint32_t row) const {
+        return row_knots[row + 1] - row_knots[row] <= 2 && (row & (row - 1)) != 0;
+    }
     double phi(double column_position) const;
     /// Of a position, which is 1 - cos(theta_h) in steps of the file's axis.
     Latitude latitude(double row_position) const { return Latitude(row_position / row_resolution); }
+
+private:
+    HalfGrid(std::uint32_t columns, std::vector<std::uint32_t> rows, bool mirrored);
 };
 
 /// The least share of all stored albedos that a bin is stored with: black views keep a pdf.

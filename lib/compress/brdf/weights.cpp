@@ -101,39 +101,42 @@ HorizonSquares look_at_horizon(const Reflected& reflected, BrdfViews& views) {
 }
 
 WeightBound::WeightBound(const BrdfViews& views, const HorizonSquares& horizon,
-                         const std::vector<std::uint32_t>& cell, std::size_t cells, double max_weight)
+                         const std::vector<std::uint32_t>& cell, const std::vector<TileCell>& cells,
+                         std::size_t tiles, double max_weight)
     : least_(views.targets.size()) {
     const std::size_t turns = views.phi.size();
-    std::vector<double> measure(cells, 0.0);
+    std::vector<double> scale(cells.size(), 0.0); // from the largest pdf in a cell to what its tile needs
     for (std::uint32_t r = 0, i = 0; r < views.grid.rows(); ++r)
         for (std::uint32_t c = 0; c < views.grid.columns(); ++c, ++i)
-            measure[cell[i]] += views.grid.row_measure[r] * views.grid.column_measure[c];
-    std::vector<std::vector<double>> peaks(least_.size());
-    parallel_for(std::size_t{0}, peaks.size(), [&](std::size_t v) {
-        peaks[v].assign(cells, 0.0);
+            scale[cell[i]] += views.grid.row_measure[r] * views.grid.column_measure[c];
+    for (std::size_t c = 0; c < cells.size(); ++c) // dark cells have no share
+        scale[c] = cells[c].share > 0.0 ? scale[c] / (max_weight * cells[c].share) : 0.0;
+    std::vector<std::vector<double>> own(least_.size());
+    parallel_for(std::size_t{0}, own.size(), [&](std::size_t v) {
+        own[v].assign(tiles, 0.0);
         if (!(views.targets[v].albedo > 0.0)) return;
-        for (std::size_t i = 0; i < cell.size(); ++i) {
-            double& peak = peaks[v][cell[i]];
-            peak = std::max(peak, double{views.targets[v].square[i]});
-        }
-        for (double& peak : peaks[v]) peak = std::sqrt(peak);
-        for (const HorizonSquare& s : horizon[v]) {
-            double& peak = peaks[v][cell[s.square]];
-            peak = std::max(peak, double{s.peak});
+        std::vector<double> peaks(cells.size(), 0.0);
+        for (std::size_t i = 0; i < cell.size(); ++i)
+            peaks[cell[i]] = std::max(peaks[cell[i]], double{views.targets[v].square[i]});
+        for (double& peak : peaks) peak = std::sqrt(peak);
+        for (const HorizonSquare& s : horizon[v])
+            peaks[cell[s.square]] = std::max(peaks[cell[s.square]], double{s.peak});
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            double& least = own[v][cells[c].tile];
+            least = std::max(least, peaks[c] * scale[c]);
         }
     });
-    parallel_for(std::size_t{0}, peaks.size(), [&](std::size_t v) {
+    parallel_for(std::size_t{0}, own.size(), [&](std::size_t v) {
         const std::size_t ix = v / turns, k = v % turns;
-        least_[v] = peaks[v];
+        least_[v] = own[v];
         const auto add = [&](std::size_t x, std::size_t turn) {
-            const std::vector<double>& other = peaks[x * turns + turn];
-            for (std::size_t c = 0; c < cells; ++c) least_[v][c] = std::max(least_[v][c], other[c]);
+            const std::vector<double>& other = own[x * turns + turn];
+            for (std::size_t t = 0; t < tiles; ++t) least_[v][t] = std::max(least_[v][t], other[t]);
         };
         if (ix > 0) add(ix - 1, k);
         if (ix + 1 < views.x.size()) add(ix + 1, k);
         add(ix, (k + 1) % turns);
         add(ix, (k + turns - 1) % turns);
-        for (std::size_t c = 0; c < cells; ++c) least_[v][c] *= measure[c] / max_weight;
     });
 }
 

@@ -26,13 +26,19 @@ using HorizonSquares = std::vector<std::vector<HorizonSquare>>; ///< one list a 
 /// The horizon of all views, whose targets learn what light is there.
 HorizonSquares look_at_horizon(const Reflected& reflected, BrdfViews& views);
 
-/// The least probability of each cell for each view, as large as a bound on weights asks for.
+/// A cell of a grid of half-vectors: its tile, and the share of the tile's samples that it gets from every row.
+struct TileCell {
+    std::uint32_t tile = 0;
+    double share = 1.0;
+};
+
+/// The least probability of each tile for each view, as large as a bound on weights asks for in each of its cells.
 class WeightBound {
 public:
-    /// `cell` of each square, of `cells`; A view needs what its neighbours need, too, as
-    /// views between them are sampled from the same rows.
+    /// `cell` of each square, in `cells`; these are of `tiles` tiles. A view needs what its neighbours need, too,
+    /// as views between them are sampled from the same rows.
     WeightBound(const BrdfViews& views, const HorizonSquares& horizon, const std::vector<std::uint32_t>& cell,
-                std::size_t cells, double max_weight);
+                const std::vector<TileCell>& cells, std::size_t tiles, double max_weight);
 
     /// Raises rows in `wanted` by as much as mixtures of `rows` lack. Returns whether any lacks more than a
     /// hundredth.
@@ -40,7 +46,7 @@ public:
                RowProbabilities& wanted) const;
 
 private:
-    std::vector<std::vector<double>> least_; ///< views x cells
+    std::vector<std::vector<double>> least_; ///< views x tiles
 };
 
 } // namespace acdf::compress

@@ -5,6 +5,9 @@
 #include <acdf/halvings.h>
 #include <acdf/layout.h>
 
+#include <algorithm>
+#include <cstring>
+
 namespace acdf::compress {
 
 struct RowTree::Part {
@@ -98,6 +101,16 @@ void put_rows(const std::vector<bool>& has_codes, const std::vector<std::vector<
     for (const std::vector<std::uint16_t>& row : rows)
         for (const std::uint16_t code : row) bits.put(code, code_bits);
     bits.pad();
+}
+
+Chunk rows_chunk(const RowHalvings& rows) {
+    const auto splits = static_cast<std::uint32_t>(std::count(rows.has_codes.begin(), rows.has_codes.end(), true));
+    const AcdfNormalsHeader header = {static_cast<std::uint32_t>(rows.rows.size()), splits, rows.code_bits, 0};
+    Chunk chunk{ACDF_CHUNK_NORMALS, {}};
+    chunk.bytes.resize(sizeof header);
+    std::memcpy(chunk.bytes.data(), &header, sizeof header);
+    put_rows(rows.has_codes, rows.rows, rows.code_bits, chunk.bytes);
+    return chunk;
 }
 
 } // namespace acdf::compress

@@ -4,6 +4,7 @@
 #include "compress/halvings/codes.h"
 #include "compress/halvings/growth.h"
 #include "compress/halvings/halvings.h"
+#include "compress/store/store.h"
 
 #include <array>
 #include <cstddef>
@@ -60,6 +61,18 @@ private:
     std::vector<Tile> tiles_;
     std::vector<std::uint32_t> upper_; ///< of nodes at the top in preorder, the lower half being the next; kTile
 };
+
+/// A tree of halvings, and rows of codes at its top: what chunks HALV and NORM hold.
+struct RowHalvings {
+    Halvings halvings;           ///< with the codes that all share, and those of none where rows have their own
+    std::vector<bool> has_codes; ///< one a halving: rows have a code of their own
+    std::uint32_t code_bits = 7; ///< of these
+    std::vector<std::vector<std::uint16_t>>
+        rows; ///< of each, codes of the halvings that it leads random numbers to
+};
+
+/// Chunk NORM.
+Chunk rows_chunk(const RowHalvings& rows);
 
 /// Appends them as chunks MAPS and NORM have them: a bit a halving, whether it has codes of rows, then the codes.
 void put_rows(const std::vector<bool>& has_codes, const std::vector<std::vector<std::uint16_t>>& rows,

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compress/fit/fit.h"
-#include "compress/halvings/halvings.h"
+#include "compress/halvings/rows.h"
 
 #include <acdf/layout.h>
 
@@ -18,13 +18,9 @@ struct IndexedMap {
     double weight = 1.0;          ///< of samples, the share that the tree has
 };
 
-/// What chunks HALV and MAPS hold of the tree.
-struct IndexedTree {
-    Halvings halvings;                            ///< shared by all maps
-    std::vector<bool> has_codes;                  ///< one a halving: each map has a code of its own
-    std::uint32_t code_bits = 8;                  ///< of these
-    std::vector<std::vector<std::uint16_t>> rows; ///< of each map, those codes
-    double variance = 0.0;                        ///< what maps have, mean: of one sample, relative, times `weight`
+/// What chunks HALV and MAPS hold of the tree: a row a map, of all halvings with codes.
+struct IndexedTree : RowHalvings {
+    double variance = 0.0; ///< what maps have, mean: of one sample, relative, times `weight`
 };
 
 /// The best tree whose two chunks take at most `bytes`, but for what MAPS holds beside codes. All maps have one

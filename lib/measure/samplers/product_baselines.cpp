@@ -120,7 +120,7 @@ std::unique_ptr<LightSampler> half_and_half(const LightSampler& a, const LightSa
 std::unique_ptr<LightSampler> product_tiles_sampler(const compress::Target& target, std::uint32_t columns,
                                                     std::uint32_t rows, const File& brdf) {
     if (brdf.kind() != ACDF_KIND_BRDF) throw std::invalid_argument("tiles are weighted by a BRDF, or ggx");
-    return tiles_of(target, columns, rows, BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), memory_of(brdf));
+    return tiles_of(target, columns, rows, BrdfLobe(brdf.brdf().data()), memory_of(brdf));
 }
 
 std::unique_ptr<LightSampler> product_tiles_sampler(const compress::Target& target, std::uint32_t columns,

@@ -65,7 +65,7 @@ int product_parts(std::uint32_t samples) {
 std::unique_ptr<LightSampler> product_sampler(const File& light, const File& brdf, int parts) {
     if (brdf.kind() != ACDF_KIND_BRDF)
         throw std::invalid_argument("the second part of a product is a BRDF, or ggx");
-    return made(light, BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), parts, memory_of(brdf));
+    return made(light, BrdfLobe(brdf.brdf().data()), parts, memory_of(brdf));
 }
 
 std::unique_ptr<LightSampler> product_sampler(const File& light, double alpha, int parts) {

@@ -103,9 +103,13 @@ public:
 private:
     bool find_any(const std::uint32_t* square, AcdfRange* range, AcdfStratum* strata) const {
         if (point_.what == ACDF_LOCAL_BLEND) return find(square, range, strata);
-        if (point_.what == ACDF_LOCAL_ROWS)
-            return acdf_rows_strata(local_.rows_of_normals, local_.environment.halved, &point_.by.rows, square,
-                                    range, strata) > 0.0;
+        if (point_.what == ACDF_LOCAL_ROWS) {
+            AcdfSpan box[2];
+            const double p = acdf_rows_strata(local_.rows_of_normals, local_.environment.halved, &point_.by.rows,
+                                              square, box, strata);
+            acdf_halved_ranges(box, range);
+            return p > 0.0;
+        }
         if (local_.environment.halved)
             return acdf_environment_halved_find(&local_.environment, square, range, strata) > 0.0;
         return acdf_tree_find(local_.environment.tree, point_.by.root, square, range, strata) > 0.0;
@@ -204,7 +208,7 @@ std::unique_ptr<LightSampler> warp_of(const File& light, const AnyLobe& lobe, st
 
 std::unique_ptr<LightSampler> product_warp_sampler(const File& light, const File& brdf) {
     if (brdf.kind() != ACDF_KIND_BRDF) throw std::invalid_argument("numbers are warped towards a BRDF, or ggx");
-    return warp_of(light, BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), memory_of(brdf));
+    return warp_of(light, BrdfLobe(brdf.brdf().data()), memory_of(brdf));
 }
 
 std::unique_ptr<LightSampler> product_warp_sampler(const File& light, double alpha) {

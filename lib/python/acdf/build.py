@@ -255,7 +255,6 @@ def build_brdf(
     channel: str = "luminance",
     isotropic: bool = True,
     mirrored: bool = True,
-    sharing: bool = True,
     theta_views: Optional[int] = None,
     phi_views: Optional[int] = None,
     max_weight: float = 0.0,

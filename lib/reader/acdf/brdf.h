@@ -1,5 +1,5 @@
 /* Sampling and evaluating BRDF files: for every view wo the reflected light rho(wo, wi) cos(theta_i), through the
- * half-vector (Lawrence et al. 2005, §6.2). One freestanding header over acdf/blend.h, valid C99, C++17 and
+ * half-vector (Lawrence et al. 2005, §6.2). One freestanding header over acdf/normal_rows.h, valid C99, C++17 and
  * CUDA/HIP/SYCL, with the same contract: plain views into a checked file, no allocation, no errors (SPEC.md §11).
  *
  * Frame: the surface's own, z is its normal, x its tangent. wo and wi are unit vectors that point away from the
@@ -11,7 +11,7 @@
 #ifndef ACDF_BRDF_H
 #define ACDF_BRDF_H
 
-#include <acdf/brdf_pair.h>
+#include <acdf/brdf_half.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -25,16 +25,32 @@ ACDF_FN void acdf_brdf_whole(const AcdfBrdf* brdf, AcdfRange range[2]) {
     range[0].tilt = range[1].tilt = 0.0;
 }
 
+/* A cell of a tree of halvings as a range of positions. */
+ACDF_FN void acdf_brdf_halved_range(const AcdfBrdf* brdf, const AcdfSpan box[2], AcdfRange range[2]) {
+    const double* begins = acdf_halved_heights(brdf->halved);
+    acdf_halved_ranges(box, range);
+    range[1].low = (uint32_t)begins[range[1].low];
+    range[1].high = (uint32_t)begins[range[1].high];
+}
+
 /* Finds the cell of a position; `strata` may be null. Returns its probability, 0 where no sample can fall. */
 ACDF_FN double acdf_brdf_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfBrdfPosition* place,
                               AcdfRange range[2], AcdfStratum* strata) {
     uint32_t square[2];
+    AcdfSpan box[2];
+    double p;
     square[0] = acdf_brdf_step(place->position[0], brdf->columns);
-    square[1] = acdf_brdf_step(place->position[1], brdf->rows);
-    acdf_brdf_whole(brdf, range);
-    if (!brdf->blend.tiles) return acdf_tree_find(brdf->tree, view->root, square, range, strata);
+    if (!brdf->halved) {
+        square[1] = acdf_brdf_step(place->position[1], brdf->rows);
+        acdf_brdf_whole(brdf, range);
+        return acdf_tree_find(brdf->tree, view->root, square, range, strata);
+    }
     if (view->mix.count == 0) return 0.0;
-    return acdf_blend_find(&brdf->blend, &view->mix, square, range, strata);
+    square[1] = acdf_half_row_of(acdf_halved_heights(brdf->halved), place->position[1]);
+    p = strata ? acdf_rows_strata(brdf->rows_of_views, brdf->halved, &view->mix, square, box, strata)
+               : acdf_rows_find(brdf->rows_of_views, brdf->halved, &view->mix, square, box);
+    acdf_brdf_halved_range(brdf, box, range);
+    return p;
 }
 
 /* Fraction across a cell, of a position in it, in [0, 1]. */
@@ -65,7 +81,6 @@ ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view,
     AcdfBrdfPosition place;
     AcdfRange range[2];
     double sign, p;
-    if (brdf->tables && brdf->tables->grid) return acdf_brdf_pair_pdf(brdf, view, wi);
     if (!acdf_brdf_half_position(brdf, view, wi, &place, &sign)) return 0.0f;
     p = acdf_brdf_find(brdf, view, &place, range, 0);
     return acdf_brdf_cell_pdf(brdf, p, range, &place, wi);
@@ -75,8 +90,6 @@ ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view,
  * surface and for directions that are NaN or not of unit length. */
 ACDF_FN float acdf_brdf_pdf(const AcdfBrdf* brdf, const float wo[3], const float wi[3]) {
     AcdfBrdfView view;
-    if (brdf->tables && brdf->tables->grid)
-        return acdf_brdf_pair_view(brdf, wo, &view) ? acdf_brdf_pair_pdf(brdf, &view, wi) : 0.0f;
     if (!acdf_brdf_view(brdf, wo, &view)) return 0.0f;
     return acdf_brdf_view_pdf(brdf, &view, wi);
 }
@@ -110,7 +123,7 @@ ACDF_FN int acdf_brdf_begin(const AcdfBrdf* brdf, const AcdfBrdfView* view, doub
         u[1] = (u[1] - floor) / (1.0 - floor);
     }
     if (acdf_brdf_mirrored(brdf)) *sign = acdf_brdf_mirror(&u[0]);
-    return !brdf->blend.tiles || view->mix.count > 0;
+    return !brdf->halved || view->mix.count > 0;
 }
 
 /* Visibility wi in a cell of probability p; u is what is left of the random numbers. */
@@ -156,58 +169,37 @@ ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfVi
     return out;
 }
 
-/* acdf_brdf_view_sample by a traversal from the root. */
-ACDF_FN AcdfDirectionSample acdf_brdf_view_walk(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0,
-                                                double u1) {
-    AcdfDirectionSample out;
-    AcdfRange range[2];
-    double u[2], sign, p;
-    if (!acdf_brdf_begin(brdf, view, u0, u1, u, &sign, &out)) return out;
-    acdf_brdf_whole(brdf, range);
-    p = brdf->blend.tiles ? acdf_blend_sample(&brdf->blend, &view->mix, u, range)
-                          : acdf_tree_sample(brdf->tree, view->root, u, range);
-    return acdf_brdf_end(brdf, view, range, u, sign, p);
+/* The cell that random numbers lead to; they are rescaled to [0, 1] in it. Returns its probability. */
+ACDF_FN double acdf_brdf_choose(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u[2], AcdfRange range[2]) {
+    AcdfSpan box[2];
+    double p;
+    if (!brdf->halved) {
+        acdf_brdf_whole(brdf, range);
+        return acdf_tree_sample(brdf->tree, view->root, u, range);
+    }
+    p = acdf_rows_choose(brdf->rows_of_views, brdf->halved, &view->mix, u, box);
+    acdf_brdf_halved_range(brdf, box, range);
+    return p;
 }
 
 /* acdf_brdf_sample for a view that was looked up. */
 ACDF_FN AcdfDirectionSample acdf_brdf_view_sample(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0,
                                                   double u1) {
-#ifdef ACDF_BRDF_GUESSES
     AcdfDirectionSample out;
-    if (brdf->tables && brdf->tables->guesses && acdf_brdf_pair_sample(brdf, view, u0, u1, &out)) return out;
-#endif
-    return acdf_brdf_view_walk(brdf, view, u0, u1);
+    AcdfRange range[2];
+    double u[2], sign, p;
+    if (!acdf_brdf_begin(brdf, view, u0, u1, u, &sign, &out)) return out;
+    p = acdf_brdf_choose(brdf, view, u, range);
+    return acdf_brdf_end(brdf, view, range, u, sign, p);
 }
 
-/* A direction about as acdf_brdf_view_sample samples it, to look where much is reflected; pdf 0: none. */
-ACDF_FN AcdfDirectionSample acdf_brdf_view_about(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0,
-                                                 double u1) {
-#ifdef ACDF_BRDF_GUESSES
-    AcdfDirectionSample out;
-    if (brdf->tables && brdf->tables->guesses && acdf_brdf_pair_about(brdf, view, u0, u1, &out)) return out;
-#endif
-    return acdf_brdf_view_sample(brdf, view, u0, u1);
-}
-
-/* acdf_brdf_sample by a traversal from the root. */
-ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_brdf_walk(const AcdfBrdf* brdf, const float wo[3], double u0,
-                                                       double u1) {
+/* Samples wi for wo; u0 and u1 in [0, 1]; values outside are clamped, NaN counts as 0. Monotone in each of them
+ * within a cell, u0 in phi_h and u1 in theta_h. pdf 0 (and no direction) for wo that are not unit vectors above the
+ * surface. */
+ACDF_FN AcdfDirectionSample acdf_brdf_sample(const AcdfBrdf* brdf, const float wo[3], double u0, double u1) {
     const AcdfDirectionSample nothing = {{0.0f, 0.0f, 0.0f}, 0.0f};
     AcdfBrdfView view;
-    return acdf_brdf_view(brdf, wo, &view) ? acdf_brdf_view_walk(brdf, &view, u0, u1) : nothing;
-}
-
-/* Samples wi for wo; u0 (phi_h) and u1 (theta_h) in [0, 1]; values outside are clamped, NaN counts as 0. Monotone
- * in each of them within a cell. pdf 0 (and no direction) for wo that are not unit vectors above the surface. */
-ACDF_FN AcdfDirectionSample acdf_brdf_sample(const AcdfBrdf* brdf, const float wo[3], double u0, double u1) {
-#ifdef ACDF_BRDF_GUESSES
-    AcdfDirectionSample out;
-    AcdfBrdfView view;
-    if (brdf->tables && brdf->tables->guesses && acdf_brdf_pair_view(brdf, wo, &view) &&
-        acdf_brdf_pair_sample(brdf, &view, u0, u1, &out))
-        return out;
-#endif
-    return acdf_brdf_walk(brdf, wo, u0, u1);
+    return acdf_brdf_view(brdf, wo, &view) ? acdf_brdf_view_sample(brdf, &view, u0, u1) : nothing;
 }
 
 /* Moves a position in a cell to the half-vector that reflects wo into the direction of wi, if the cell holds that

@@ -2,36 +2,32 @@
 #ifndef ACDF_BRDF_VIEW_H
 #define ACDF_BRDF_VIEW_H
 
-#include <acdf/brdf_tables.h>
+#include <acdf/normal_rows.h>
+#include <acdf/tree.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-struct AcdfBrdfVectors;
-
 typedef struct AcdfBrdf {
-    AcdfBlend blend;              /* blend.tiles is null where each bin has a tree of its own */
-    const uint8_t* tree;          /* chunk TREE */
-    const AcdfBin* bins;          /* theta_count x phi_count */
-    const AcdfViews* views;       /* chunk VIEW */
-    const float* nodes;           /* theta_count, behind it */
-    uint32_t columns;             /* axis 0, phi_h */
-    uint32_t rows;                /* axis 1, cos_theta_h */
-    double total;                 /* sum of the bins' albedos */
-    const AcdfBrdfTables* tables; /* runtime tables; null: traverse the tree */
+    const AcdfHalvedTree* halved; /* what all views share below their rows; null: each has a tree of curves */
+    const AcdfNormalRows* rows_of_views; /* beside it */
+    const uint8_t* tree;                 /* chunk TREE, of curves */
+    const AcdfBin* bins;                 /* theta_count x phi_count */
+    const AcdfViews* views;              /* chunk VIEW */
+    const float* nodes;                  /* theta_count, behind it */
+    uint32_t columns;                    /* steps of axis 0, phi_h */
+    uint32_t rows;                       /* steps of 1 - cos(theta_h), in [0, 1]: of axis 1, of curves */
+    double total;                        /* sum of the bins' albedos */
 } AcdfBrdf;
 
 /* What serves a view: which rows or which tree, and the turn that brings wo into the plane of x and z. */
 typedef struct AcdfBrdfView {
     double wo[3];
     double turn[2]; /* x and y of a vector to which that turn brings x: wo's own where the file is isotropic */
-    uint32_t root;  /* of the tree, where there are no rows */
-    AcdfMixture mix;
-    uint32_t lower;        /* of the two views around wo, where there are runtime tables */
-    const uint8_t* row[2]; /* theirs */
-    double pair[2];        /* and their weights */
     double albedo;
+    AcdfRowMixture mix; /* of rows of halvings; without rows nothing is sampled */
+    uint32_t root;      /* of curves: the tree of the nearest stored view */
 } AcdfBrdfView;
 
 ACDF_FN int acdf_brdf_mirrored(const AcdfBrdf* brdf) { return (brdf->views->flags & ACDF_VIEWS_MIRRORED) != 0; }
@@ -67,9 +63,9 @@ ACDF_FN uint32_t acdf_view_lower(const float* nodes, uint32_t count, double x) {
 /* The nodes on both sides of a coordinate and how far it is from the lower to the upper one. */
 ACDF_FN double acdf_view_nodes(const AcdfBrdf* brdf, double cos_theta, uint32_t node[2]) {
     const uint32_t count = brdf->views->theta_count;
-    const double x2 = acdf_view_square(cos_theta), x = acdf_brdf_root(x2);
+    const double x = acdf_brdf_root(acdf_view_square(cos_theta));
     double low, high, t;
-    node[0] = brdf->tables ? acdf_brdf_lower_view(brdf->tables, x, x2) : acdf_view_lower(brdf->nodes, count, x);
+    node[0] = acdf_view_lower(brdf->nodes, count, x);
     node[1] = count > 1 ? node[0] + 1 : node[0];
     if (node[0] == node[1]) return 0.0;
     low = (double)brdf->nodes[node[0]];
@@ -99,65 +95,59 @@ ACDF_INLINE int acdf_brdf_turn(const float wo[3], int isotropic, AcdfBrdfView* v
     return acdf_is_unit_square(length2) && z > 0.0;
 }
 
+/* Bins around a view, and what each weighs: by interpolation, and by how much it reflects. */
+typedef struct AcdfBrdfNear {
+    uint32_t row[ACDF_MOST_ROWS_MIXED];
+    double weight[ACDF_MOST_ROWS_MIXED];
+    double largest;
+    int count;
+} AcdfBrdfNear;
+
 ACDF_FN void acdf_brdf_add(const AcdfBrdf* brdf, AcdfBrdfView* view, uint32_t index, double weight,
-                           double* largest) {
+                           AcdfBrdfNear* near) {
     const AcdfBin* bin = &brdf->bins[index];
-    view->albedo += weight * (double)bin->share * brdf->total;
-    if (brdf->blend.tiles) {
-        acdf_mixture_add(&view->mix, &brdf->blend, bin->root, weight * (double)bin->share);
-    } else if (weight > *largest) {
-        *largest = weight;
-        view->root = bin->root;
+    const double reflected = weight * (double)bin->share;
+    view->albedo += reflected * brdf->total;
+    if (!brdf->halved) {
+        if (weight > near->largest) near->largest = weight, view->root = bin->root;
+    } else if (reflected > 0.0) {
+        near->row[near->count] = bin->root;
+        near->weight[near->count++] = reflected;
     }
 }
 
-/* What runtime tables ask of a view: the two rows around it. Returns 0 for wo that are not unit vectors above the
- * surface. */
-ACDF_INLINE int acdf_brdf_pair_view(const AcdfBrdf* brdf, const float wo[3], AcdfBrdfView* view) {
-    const double* node;
-    double x, x2, t;
-    if (!acdf_brdf_turn(wo, 1, view)) return 0;
-    x2 = acdf_view_square(view->wo[2]);
-    x = acdf_brdf_root(x2);
-    view->lower = acdf_brdf_lower_view(brdf->tables, x, x2);
-    node = acdf_brdf_node(brdf->tables, view->lower); /* infinity and 0 stand behind the only one */
-    t = (x - node[0]) / (node[2] - node[0]);
-    t = t > 0.0 ? (t < 1.0 ? t : 1.0) : 0.0;
-    view->pair[0] = (1.0 - t) * node[1];
-    view->pair[1] = t * node[3];
-    view->row[0] = acdf_blend_row(&brdf->blend, brdf->bins[view->lower].root);
-    view->row[1] = acdf_blend_row(&brdf->blend, brdf->bins[view->lower + (brdf->views->theta_count > 1)].root);
-    return 1;
+/* The bins of an elevation at the azimuths on both sides of wo. */
+ACDF_FN void acdf_brdf_add_around(const AcdfBrdf* brdf, AcdfBrdfView* view, uint32_t node, double weight,
+                                  AcdfBrdfNear* near) {
+    const uint32_t columns = brdf->views->phi_count;
+    /* Column 0: phi = -pi, which is +pi. */
+    const double s = (double)columns * (0.5 + 0.5 * acdf_atan2pi(view->wo[1], view->wo[0]));
+    const uint32_t whole = (uint32_t)s, column = whole % columns;
+    const double part = s - (double)whole;
+    acdf_brdf_add(brdf, view, node * columns + column, weight * (1.0 - part), near);
+    acdf_brdf_add(brdf, view, node * columns + (column + 1 < columns ? column + 1 : 0), weight * part, near);
 }
 
 /* Looks up the stored views around wo. Returns 0 for those that are not unit vectors above the surface. */
 ACDF_FN int acdf_brdf_view(const AcdfBrdf* brdf, const float wo[3], AcdfBrdfView* view) {
-    const uint32_t columns = brdf->views->phi_count;
-    uint32_t node[2], column[2];
-    double t, s = 0.0, largest = 0.0;
-    view->lower = 0;
-    view->row[0] = view->row[1] = 0;
-    view->pair[0] = view->pair[1] = 0.0;
-    if (brdf->tables ? !acdf_brdf_pair_view(brdf, wo, view) : !acdf_brdf_turn(wo, columns == 1, view)) return 0;
+    const int isotropic = brdf->views->phi_count == 1;
+    AcdfBrdfNear near;
+    uint32_t node[2];
+    double t;
+    int k;
+    if (!acdf_brdf_turn(wo, isotropic, view)) return 0;
+    near.count = 0;
+    near.largest = 0.0;
     view->mix.count = 0;
     view->albedo = 0.0;
     view->root = 0;
     t = acdf_view_nodes(brdf, view->wo[2], node);
-    if (columns == 1) {
-        acdf_brdf_add(brdf, view, node[0], 1.0 - t, &largest);
-        acdf_brdf_add(brdf, view, node[1], t, &largest);
-        return 1;
+    for (k = 0; k < 2; ++k) {
+        const double weight = k ? t : 1.0 - t;
+        if (isotropic) acdf_brdf_add(brdf, view, node[k], weight, &near);
+        else acdf_brdf_add_around(brdf, view, node[k], weight, &near);
     }
-    s = (double)columns *
-        (0.5 + 0.5 * acdf_atan2pi(view->wo[1], view->wo[0])); /* column 0: phi = -pi, which is +pi */
-    column[0] = (uint32_t)s;
-    s -= (double)column[0];
-    column[0] %= columns;
-    column[1] = column[0] + 1 < columns ? column[0] + 1 : 0;
-    acdf_brdf_add(brdf, view, node[0] * columns + column[0], (1.0 - t) * (1.0 - s), &largest);
-    acdf_brdf_add(brdf, view, node[0] * columns + column[1], (1.0 - t) * s, &largest);
-    acdf_brdf_add(brdf, view, node[1] * columns + column[0], t * (1.0 - s), &largest);
-    acdf_brdf_add(brdf, view, node[1] * columns + column[1], t * s, &largest);
+    if (near.count > 0) acdf_rows_mix(brdf->rows_of_views, near.row, near.weight, near.count, &view->mix);
     return 1;
 }
 

@@ -97,8 +97,8 @@ ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, A
 /* acdf_local_at of one tree of halvings. */
 ACDF_INLINE void acdf_local_rows_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     AcdfNormalBins bins;
-    double weight[ACDF_NORMALS_MIXED];
-    uint32_t row[ACDF_NORMALS_MIXED];
+    double weight[3];
+    uint32_t row[3];
     int i, count = 0;
     acdf_local_no_rows(normal, out);
     if (!acdf_local_bins(local, out->surface, &bins)) return;

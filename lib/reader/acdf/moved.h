@@ -27,7 +27,8 @@ typedef struct AcdfMove {
     const void* to;
 } AcdfMove;
 
-/* The file's bytes, what was inflated of them, and runtime tables: two where normals have rows of halvings. */
+/* The file's bytes, what was inflated of them, and runtime tables: two where normals or views have rows of
+ * halvings. */
 enum { ACDF_MAX_MOVES = 4 };
 
 /* Where what is at `pointer` lies in the copies. */
@@ -84,12 +85,12 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
 
 /* The same of a BRDF. */
 static inline void acdf_move_brdf(AcdfBrdf* brdf, const AcdfMove* moves, int count) {
-    acdf_move_blend(&brdf->blend, moves, count);
     ACDF_MOVE(uint8_t, brdf->tree);
+    ACDF_MOVE(AcdfHalvedTree, brdf->halved);
+    ACDF_MOVE(AcdfNormalRows, brdf->rows_of_views);
     ACDF_MOVE(AcdfBin, brdf->bins);
     ACDF_MOVE(AcdfViews, brdf->views);
     ACDF_MOVE(float, brdf->nodes);
-    ACDF_MOVE(AcdfBrdfTables, brdf->tables);
 }
 
 /* The same of a table. */

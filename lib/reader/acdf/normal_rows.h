@@ -1,6 +1,6 @@
-/* Local environment maps on one tree of halvings: at its top each normal of an octahedron has a row of codes of its
- * own, below that all share (SPEC.md §10.7). A normal samples from the mixture of the rows around it. Part of
- * acdf/local.h.
+/* Local environment maps and BRDFs on one tree of halvings: at its top each stored normal or view has a row of
+ * codes of its own, below that all share (SPEC.md §10.7). Those between sample from a mixture of rows. Part of
+ * acdf/local.h and acdf/brdf.h.
  *
  * Where codes of rows end there are tiles, numbered in the order of the tree. u[0] chooses a group of tiles, which
  * is a small tree of splits, by a short search; u[1] goes down that tree, whose codes stand together. Numbers that
@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-enum { ACDF_NORMALS_MIXED = 3 };
+enum { ACDF_NORMALS_MIXED = 3, ACDF_MOST_ROWS_MIXED = 4 }; /* rows of normals, and of views */
 #define ACDF_STEPS_OF_ANY_CODE                                                                                     \
     0x20000u /* any code but the first and the last leads some of so many to both halves */
 
@@ -48,16 +48,18 @@ typedef struct AcdfNormalRows {
     uint32_t position_scale[2]; /* step * scale / 2^32 is the square of a grid step */
 } AcdfNormalRows;
 
-/* The rows around a normal, and what of all samples each has: whole numbers that add up to ACDF_WEIGHTS. */
+/* The rows around a normal or a view, and what of all samples each has: whole numbers that add up to ACDF_WEIGHTS.
+ */
 typedef struct AcdfRowMixture {
-    const uint8_t* codes[ACDF_NORMALS_MIXED];
-    const uint32_t* ends[ACDF_NORMALS_MIXED];
-    double weight[ACDF_NORMALS_MIXED];
+    int count; /* at least one, where there is a mixture */
+    const uint8_t* codes[ACDF_MOST_ROWS_MIXED];
+    const uint32_t* ends[ACDF_MOST_ROWS_MIXED];
+    double weight[ACDF_MOST_ROWS_MIXED];
 } AcdfRowMixture;
 
 /* Steps of each row of a mixture. */
 typedef struct AcdfRowSteps {
-    uint32_t of[ACDF_NORMALS_MIXED];
+    uint32_t of[ACDF_MOST_ROWS_MIXED];
 } AcdfRowSteps;
 
 ACDF_INLINE const AcdfRowSplit* acdf_row_splits(const AcdfNormalRows* rows) {
@@ -81,12 +83,13 @@ ACDF_INLINE void acdf_rows_mix(const AcdfNormalRows* rows, const uint32_t* row, 
                                AcdfRowMixture* out) {
     uint32_t at;
     int i;
-    for (i = 0; i < ACDF_NORMALS_MIXED; ++i) {
-        const size_t number = row[i < count ? i : 0];
+    out->count = count;
+    for (i = 0; i < count; ++i) {
+        const size_t number = row[i];
         out->codes[i] =
             (const uint8_t*)(const void*)ACDF_TOP_ARRAY(uint32_t, rows, rows->codes) + number * rows->stride;
         out->ends[i] = ACDF_TOP_ARRAY(uint32_t, rows, rows->ends) + number * rows->group_stride;
-        out->weight[i] = i < count ? weight[i] : 0.0;
+        out->weight[i] = weight[i];
         for (at = 0; at <= rows->groups; at += 16u) ACDF_PREFETCH(out->ends[i] + at);
     }
     acdf_whole_weights(out->weight, (uint32_t)count);
@@ -96,7 +99,7 @@ ACDF_INLINE void acdf_rows_mix(const AcdfNormalRows* rows, const uint32_t* row, 
 ACDF_INLINE double acdf_rows_mass(const AcdfRowMixture* mix, const AcdfRowSteps* steps) {
     double sum = mix->weight[0] * (double)steps->of[0];
     int k;
-    for (k = 1; k < ACDF_NORMALS_MIXED; ++k) sum += mix->weight[k] * (double)steps->of[k];
+    for (k = 1; k < mix->count; ++k) sum += mix->weight[k] * (double)steps->of[k];
     return sum;
 }
 
@@ -114,12 +117,13 @@ ACDF_INLINE uint32_t acdf_row_lower(const uint32_t* shares, uint32_t last, uint3
 ACDF_INLINE AcdfRowSteps acdf_rows_divide(const AcdfNormalRows* rows, const AcdfRowMixture* mix, uint32_t split,
                                           AcdfRowSteps* steps) {
     const uint32_t* shares = ACDF_TOP_ARRAY(uint32_t, rows, rows->shares);
-    AcdfRowSteps lower;
+    AcdfRowSteps lower = {{0, 0, 0, 0}};
     int k;
-    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) {
+    k = 0;
+    do {
         lower.of[k] = acdf_row_lower(shares, rows->last, mix->codes[k][split], steps->of[k]);
         steps->of[k] -= lower.of[k];
-    }
+    } while (++k < mix->count);
     return lower;
 }
 
@@ -158,21 +162,24 @@ ACDF_INLINE uint32_t acdf_rows_find_below(const AcdfNormalRows* rows, const Acdf
 
 /* What of a mixture leads to all groups before one. */
 ACDF_INLINE double acdf_rows_before(const AcdfRowMixture* mix, uint32_t group) {
-    AcdfRowSteps steps;
+    AcdfRowSteps steps = {{0, 0, 0, 0}};
     int k;
-    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) steps.of[k] = mix->ends[k][group];
+    k = 0;
+    do steps.of[k] = mix->ends[k][group];
+    while (++k < mix->count);
     return acdf_rows_mass(mix, &steps);
 }
 
 /* The steps that lead to a group. Asks for its codes. */
 ACDF_INLINE AcdfRowSteps acdf_rows_of_group(const AcdfNormalRows* rows, const AcdfRowMixture* mix, uint32_t group) {
     const uint32_t node = acdf_row_group(rows, group);
-    AcdfRowSteps steps;
+    AcdfRowSteps steps = {{0, 0, 0, 0}};
     int k;
-    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) {
+    k = 0;
+    do {
         if (!(node & ACDF_TOP_TILE)) ACDF_PREFETCH(mix->codes[k] + node);
         steps.of[k] = mix->ends[k][group + 1u] - mix->ends[k][group];
-    }
+    } while (++k < mix->count);
     return steps;
 }
 
@@ -312,6 +319,19 @@ ACDF_INLINE float acdf_rows_pdf(const AcdfNormalRows* rows, const AcdfHalvedTree
     return acdf_float_pdf(acdf_rows_cell(rows, tree, grid, mix, acdf_rows_find_group(rows, square), square, box));
 }
 
+/* The cell that u in [0, 1] lead to, and its probability; they are rescaled to [0, 1] in it. */
+ACDF_FN double acdf_rows_choose(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfRowMixture* mix,
+                                double u[2], AcdfSpan box[2]) {
+    const uint32_t group = acdf_rows_sample_group(rows, mix, &u[0]);
+    AcdfRowSteps steps = acdf_rows_of_group(rows, mix, group);
+    const AcdfTopTile* tile =
+        acdf_row_tile(rows, acdf_rows_sample_below(rows, mix, acdf_row_group(rows, group), &steps, &u[1]));
+    const double share = acdf_rows_mass(mix, &steps) * 0x1p-52;
+    box[0] = tile->box[0];
+    box[1] = tile->box[1];
+    return tile->node == ACDF_LEAF ? share : share * acdf_tile_descend(acdf_halvings_nodes(tree), tile, u, box);
+}
+
 /* The cell that holds a grid step of each axis, and its probability. */
 ACDF_FN double acdf_rows_find(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfRowMixture* mix,
                               const uint32_t position[2], AcdfSpan box[2]) {
@@ -326,7 +346,7 @@ ACDF_FN double acdf_rows_find(const AcdfNormalRows* rows, const AcdfHalvedTree* 
 
 /* The same, and the random numbers that lead to the cell. */
 ACDF_FN double acdf_rows_strata(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfRowMixture* mix,
-                                const uint32_t position[2], AcdfRange range[2], AcdfStratum strata[2]) {
+                                const uint32_t position[2], AcdfSpan box[2], AcdfStratum strata[2]) {
     const AcdfRowSplit* splits = acdf_row_splits(rows);
     const uint32_t group = acdf_rows_find_group(rows, position);
     AcdfRowSteps steps = acdf_rows_of_group(rows, mix, group);
@@ -334,7 +354,7 @@ ACDF_FN double acdf_rows_strata(const AcdfNormalRows* rows, const AcdfHalvedTree
     uint32_t node = acdf_row_group(rows, group);
     const AcdfTopTile* tile;
     double below = 0.0, mass;
-    AcdfSpan box[2], inside[2];
+    AcdfSpan inside[2];
     int axis;
     while (!(node & ACDF_TOP_TILE)) {
         const AcdfRowSplit* split = &splits[node];
@@ -348,7 +368,6 @@ ACDF_FN double acdf_rows_strata(const AcdfNormalRows* rows, const AcdfHalvedTree
     mass = acdf_rows_mass(mix, &steps);
     for (axis = 0; axis < 2; ++axis) inside[axis] = tile->steps[axis], box[axis] = tile->box[axis];
     if (tile->node != ACDF_LEAF) acdf_halvings_find(acdf_halvings_nodes(tree), tile->node, position, inside, box);
-    acdf_halved_ranges(box, range);
     if (!(mass > 0.0)) return 0.0;
     strata[0].low = acdf_rows_before(mix, group) * 0x1p-52;
     strata[0].width = of_group * 0x1p-52;

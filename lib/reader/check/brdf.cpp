@@ -29,24 +29,26 @@ constexpr Wanted wanted[] = {
     {"phi_o", ACDF_AXIS_INDEXED, -ACDF_PI, ACDF_PI, max_views},
 };
 
-const char* axis_fault(const AcdfAxis& axis, u32 i) {
+const char* axis_fault(const AcdfAxis& axis, u32 i, bool halved) {
     const Wanted& w = wanted[i];
     const bool half = i == 0 && axis.low == 0.0; // mirrored
     if (std::strncmp(reinterpret_cast<const char*>(axis.name), w.name, sizeof axis.name) != 0) return "name";
     if (axis.role != w.role) return "role";
-    if (axis.measure != ACDF_MEASURE_LINEAR) return "measure";
+    const bool rows = halved && i == 1; // of half-vectors
+    if (axis.measure != (rows ? u32{ACDF_MEASURE_HALF} : u32{ACDF_MEASURE_LINEAR})) return "measure";
+    if (rows && axis.resolution != ACDF_HALF_ROWS) return "resolution";
     if ((!half && axis.low != w.low) || axis.high != w.high) return "range";
     return axis.resolution > w.most ? "resolution" : nullptr;
 }
 
-void check_brdf_axes(const Payload& payload, Report& report, const Parts& parts) {
+void check_brdf_axes(const Payload& payload, bool halved, Report& report, const Parts& parts) {
     const AcdfDescription& d = *parts.description;
     if (d.axis_count != 4) {
         report.add(8001, payload.at(offsetof(AcdfDescription, axis_count)), "it has %u axes", d.axis_count);
         return;
     }
     for (u32 i = 0; i < 4; ++i)
-        if (const char* fault = axis_fault(parts.axes[i], i))
+        if (const char* fault = axis_fault(parts.axes[i], i, halved))
             report.add(8001, payload.at(sizeof d + i * sizeof(AcdfAxis)), "axis %u: the %s differs", i, fault);
     const u64 bins = u64{parts.axes[2].resolution} * parts.axes[3].resolution;
     if (bins != d.bin_count)
@@ -85,9 +87,10 @@ void check_nodes(const Payload& payload, Report& report, const Parts& parts) {
 
 } // namespace
 
-void check_brdf_kind(const Payload& description, const Payload& views, Report& report, Parts& parts) noexcept {
+void check_brdf_kind(const Payloads& payloads, Report& report, Parts& parts) noexcept {
+    const Payload &description = payloads.of[chunk_description], &views = payloads.of[chunk_views];
     if (parts.description->parameterization != ACDF_PARAM_HALF_ANGLE) return; // rule 5016: what axes mean is open
-    check_brdf_axes(description, report, parts);
+    check_brdf_axes(description, payloads.of[chunk_halvings].data != nullptr, report, parts);
     if (!views.data) {
         report.add(8003, description.at(0), "there is no VIEW");
         return;
@@ -102,6 +105,11 @@ void check_brdf_kind(const Payload& description, const Payload& views, Report& r
     if (!(share >= 0.0f && share < 1.0f))
         report.add(8005, views.at(offsetof(AcdfViews, diffuse_share)), "it is %g", static_cast<double>(share));
     check_nodes(views, report, parts);
+}
+
+void check_halved_brdf(const Payloads& payloads, Report& report, Parts& parts) noexcept {
+    check_rows(payloads, report, parts);
+    if (!report.stopped()) check_brdf_kind(payloads, report, parts);
 }
 
 } // namespace acdf

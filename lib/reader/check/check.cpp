@@ -122,14 +122,13 @@ constexpr u32 required_of_normals[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, 
 // Whether a known chunk may be in files of a kind.
 bool belongs(int known, u32 kind) {
     if (known == chunk_local || known == chunk_visibility || known == chunk_portals || known == chunk_sums ||
-        known == chunk_grid || known == chunk_normals)
+        known == chunk_grid || known == chunk_tiles || known == chunk_rows)
         return kind == ACDF_KIND_LOCAL;
+    if (known == chunk_normals) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
     if (known == chunk_views) return kind == ACDF_KIND_BRDF;
     if (known == chunk_partner) return kind != ACDF_KIND_BRDF && kind != ACDF_KIND_INDEXED;
-    if (known == chunk_halvings)
-        return kind == ACDF_KIND_ENVIRONMENT || kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_INDEXED;
+    if (known == chunk_halvings) return kind != ACDF_KIND_TABLE;
     if (known == chunk_maps) return kind == ACDF_KIND_INDEXED;
-    if (known == chunk_tiles || known == chunk_rows) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
     return true;
 }
 
@@ -217,11 +216,14 @@ bool has_chunk(const ChunkTable& table, u32 type) {
     return false;
 }
 
+// Whether bins of a kind have rows of codes at the top of a tree of halvings.
+bool has_rows(u32 kind) { return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF; }
+
 void check_required(const ChunkTable& table, u32 kind, Report& report) {
     const bool halved = has_chunk(table, ACDF_CHUNK_HALVINGS);
-    const u32* types = kind == ACDF_KIND_INDEXED           ? required_of_maps
-                       : halved && kind == ACDF_KIND_LOCAL ? required_of_normals
-                                                           : required_types;
+    const u32* types = kind == ACDF_KIND_INDEXED  ? required_of_maps
+                       : halved && has_rows(kind) ? required_of_normals
+                                                  : required_types;
     u32 count = sizeof required_types / sizeof *required_types;
     if (halved && types == required_types) count = required_beside_halvings;
     for (u32 i = 0; i < count; ++i)
@@ -274,13 +276,13 @@ void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
 // Another chunk that a tree of halvings does without; null: there is none.
 const char* beside_halvings(const Payloads& payloads, u32 kind) {
     if (payloads.of[chunk_tree].data) return "TREE";
-    if (payloads.of[chunk_bins].data && kind != ACDF_KIND_LOCAL) return "BINS";
+    if (payloads.of[chunk_bins].data && !has_rows(kind)) return "BINS";
     return payloads.of[chunk_tiles].data ? "TILE" : nullptr;
 }
 
-// An environment by halvings, or several.
-void check_halved_environment(const Payloads& payloads, [[maybe_unused]] u32 kind, const AcdfAllocator& allocator,
-                              Report& report, Parts& parts) {
+// What is sampled by halvings: an environment or several, or rows of normals or views.
+void check_halved(const Payloads& payloads, [[maybe_unused]] u32 kind, const AcdfAllocator& allocator,
+                  Report& report, Parts& parts) {
     const Payload& halvings = payloads.of[chunk_halvings];
     if (const char* other = beside_halvings(payloads, kind))
         report.add(6035, halvings.at(0), "%s is there, too", other);
@@ -292,6 +294,7 @@ void check_halved_environment(const Payloads& payloads, [[maybe_unused]] u32 kin
     if (kind == ACDF_KIND_INDEXED)
         return check_indexed(payloads.of[chunk_description], payloads.of[chunk_maps], report, parts);
     if (kind == ACDF_KIND_LOCAL) return check_normals(payloads, report, parts);
+    if (kind == ACDF_KIND_BRDF) return check_halved_brdf(payloads, report, parts);
 #endif
     check_environment(payloads.of[chunk_description], payloads.of[chunk_bins], report, parts);
 }
@@ -320,7 +323,7 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_metadata(payloads.of[chunk_metadata], report, parts);
     if (!parts.description || report.stopped()) return report.verdict();
     if (payloads.of[chunk_halvings].data && belongs(chunk_halvings, header.kind))
-        check_halved_environment(payloads, header.kind, allocator, report, parts);
+        check_halved(payloads, header.kind, allocator, report, parts);
 #ifdef ACDF_ENVIRONMENT_ONLY
     else report.add(5002, description.at(offsetof(AcdfDescription, fit)));
 #else

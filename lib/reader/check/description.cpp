@@ -41,7 +41,7 @@ void check_axes(const Payload& payload, u32 count, const AcdfAxis* axes, Report&
         if (axis.role > ACDF_AXIS_INDEXED)
             report.add(5012, at + offsetof(AcdfAxis, role), "axis %u: role %u is unknown", i, axis.role);
         else sampled = sampled || axis.role == ACDF_AXIS_SAMPLED;
-        if (axis.measure > ACDF_MEASURE_COSINE)
+        if (axis.measure > ACDF_MEASURE_HALF)
             report.add(5013, at + offsetof(AcdfAxis, measure), "axis %u: measure %u is unknown", i, axis.measure);
         if (axis.resolution < 1 || axis.resolution > max_resolution)
             report.add(5014, at + offsetof(AcdfAxis, resolution), "axis %u: it is %u", i, axis.resolution);

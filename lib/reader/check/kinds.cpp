@@ -21,7 +21,7 @@ void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Pa
     const Payload &description = payloads.of[chunk_description], &bins = payloads.of[chunk_bins];
     TileBoxes boxes;
     const bool fast = kind == ACDF_KIND_LOCAL && (payloads.of[chunk_sums].data || payloads.of[chunk_grid].data);
-    if (kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF) // else rule 3013
+    if (kind == ACDF_KIND_LOCAL) // else rule 3013
         check_tiles(payloads.of[chunk_tiles], payloads.of[chunk_rows], fast, report, parts, boxes);
     if (fast && !report.stopped()) check_fast(payloads, boxes, report, parts);
     const bool tiles_ok = parts.tiles || !boxes.given; // else bins could mean anything
@@ -29,7 +29,7 @@ void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Pa
     if (report.stopped()) return;
     if (kind == ACDF_KIND_ENVIRONMENT) check_environment(description, bins, report, parts);
     if (kind == ACDF_KIND_LOCAL) check_local(payloads, boxes, report, parts);
-    if (kind == ACDF_KIND_BRDF) check_brdf_kind(description, payloads.of[chunk_views], report, parts);
+    if (kind == ACDF_KIND_BRDF) check_brdf_kind(payloads, report, parts);
     if (kind == ACDF_KIND_TABLE) check_table_kind(description, bins, report, parts);
 }
 

@@ -44,10 +44,16 @@ void check_visibility(const Payload& payload, Report& report, Parts& parts) noex
 /// PORT of a local environment; needs what check_visibility sets. Sets parts.portals if it is right.
 void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
-void check_brdf_kind(const Payload& description, const Payload& views, Report& report, Parts& parts) noexcept;
+void check_brdf_kind(const Payloads& payloads, Report& report, Parts& parts) noexcept;
+/// What a BRDF on one tree of halvings has beside HALV: BINS, NORM and VIEW; needs parts.halvings. Sets what
+/// check_rows and check_brdf_kind set.
+void check_halved_brdf(const Payloads& payloads, Report& report, Parts& parts) noexcept;
 /// What an indexed environment has beside HALV: MAPS and its axes; needs parts.halvings. Sets parts.maps and what
 /// belongs to it.
 void check_indexed(const Payload& description, const Payload& maps, Report& report, Parts& parts) noexcept;
+/// BINS and NORM, of bins that have rows at the top of a tree of halvings; needs parts.halvings. Sets parts.bins,
+/// parts.normals and what belongs to it.
+void check_rows(const Payloads& payloads, Report& report, Parts& parts) noexcept;
 /// What a local environment on one tree of halvings has beside HALV: BINS, NORM and LOCL; needs parts.halvings.
 /// Sets parts.normals and what belongs to it.
 void check_normals(const Payloads& payloads, Report& report, Parts& parts) noexcept;

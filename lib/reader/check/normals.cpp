@@ -1,4 +1,4 @@
-// Local environments on one tree of halvings: chunks NORM and BINS.
+// Rows of codes at the top of a tree of halvings, of normals or of views: chunks NORM and BINS.
 #include "check/kinds.h"
 #include "check/row_codes.h"
 
@@ -54,12 +54,8 @@ void check_normal_bins(const Payload& payload, u32 rows, Report& report, Parts& 
 
 } // namespace
 
-void check_normals(const Payloads& payloads, Report& report, Parts& parts) noexcept {
+void check_rows(const Payloads& payloads, Report& report, Parts& parts) noexcept {
     const Payload &payload = payloads.of[chunk_normals], &bins = payloads.of[chunk_bins];
-    check_local_kind(payloads.of[chunk_description], payloads.of[chunk_local], TileBoxes(), report, parts);
-    if (parts.description->axis_count != 3)
-        report.add(7003, payloads.of[chunk_description].at(offsetof(AcdfDescription, axis_count)), "it has %u axes",
-                   parts.description->axis_count);
     if (!payload.data || !bins.data || !parts.halvings || report.stopped()) return; // rule 3004
     const auto& normals = *reinterpret_cast<const AcdfNormalsHeader*>(payload.data);
     const u64 begin = sizeof normals + 4 * words_for(parts.halving_count);
@@ -73,6 +69,14 @@ void check_normals(const Payloads& payloads, Report& report, Parts& parts) noexc
     parts.normal_splits = payload.data + sizeof normals;
     parts.normals_size = payload.size - sizeof normals;
     parts.normals = &normals;
+}
+
+void check_normals(const Payloads& payloads, Report& report, Parts& parts) noexcept {
+    check_local_kind(payloads.of[chunk_description], payloads.of[chunk_local], TileBoxes(), report, parts);
+    if (parts.description->axis_count != 3)
+        report.add(7003, payloads.of[chunk_description].at(offsetof(AcdfDescription, axis_count)), "it has %u axes",
+                   parts.description->axis_count);
+    check_rows(payloads, report, parts);
 }
 
 } // namespace acdf

@@ -28,8 +28,7 @@ const Rule rules[] = {
     {3003, error, "duplicate-chunk", "No two chunks are of one type."},
     {3004, error, "missing-chunk",
      "DESC is there, and BINS and TREE are unless HALV is; in files of kind 5 HALV and MAPS are, and beside HALV "
-     "in "
-     "files of kind 2 BINS and NORM."},
+     "in files of kinds 2 and 3 BINS and NORM."},
     {3005, error, "codec", "`codec` is 0 (none), 1 (zlib) or, of TREE, 2 (planes)."},
     {3006, error, "chunk-offset",
      "A payload starts at the first multiple of 64 after what comes before it, in the table's order."},
@@ -65,7 +64,7 @@ const Rule rules[] = {
     {5011, error, "axis-name",
      "The name of an axis is UTF-8, not empty, padded with zero bytes, and no other axis has it."},
     {5012, error, "axis-role", "`role` is 0 (sampled) or 1 (indexed), and one axis at least is sampled."},
-    {5013, error, "axis-measure", "`measure` is 0 or 1."},
+    {5013, error, "axis-measure", "`measure` is 0, 1 or 2."},
     {5014, error, "axis-resolution", "`resolution` is 1 to 2147483647."},
     {5015, error, "axis-range", "`low` and `high` are finite and differ."},
     {5016, error, "parameterization-kind", "The parameterization is that of the kind."},
@@ -133,7 +132,7 @@ const Rule rules[] = {
      "more on its axis."},
     {6034, error, "halvings-padding", "The padding of HALV is zero."},
     {6035, error, "halvings-alone",
-     "HALV comes without TREE and TILE, without BINS but in local environments, and with fit 4."},
+     "HALV comes without TREE and TILE, without BINS but in kinds 2 and 3, and with fit 4."},
     {6036, error, "maps",
      "MAPS is as long as its counts say: as many maps as bins, at most as many splits as halvings, codes of 4 to "
      "12 "
@@ -199,7 +198,8 @@ const Rule rules[] = {
      "else 0."},
 
     {8001, error, "brdf-axes",
-     "A BRDF has the axes of §11, cos_theta_h of at most 268435456 steps and the others of at most 65536."},
+     "A BRDF has the axes of §11, cos_theta_h without HALV of at most 268435456 steps and the others of at most "
+     "65536."},
     {8002, error, "brdf-bins", "A BRDF has as many bins as the product of its axes of views."},
     {8003, error, "views",
      "VIEW is there, as long as `theta_count` says, with the counts of the axes; only flag bit 0 may be set, where "

@@ -46,7 +46,7 @@ void check_table_kind(const Payload& payload, const Payload& bin_records, Report
     for (u32 i = 0; i < d.axis_count; ++i) {
         const AcdfAxis& axis = parts.axes[i];
         const u64 at = payload.at(sizeof d + i * sizeof axis);
-        if (axis.measure == ACDF_MEASURE_COSINE)
+        if (axis.measure == ACDF_MEASURE_COSINE || axis.measure == ACDF_MEASURE_HALF)
             report.add(9001, at + offsetof(AcdfAxis, measure), "axis %u: it is %u", i, axis.measure);
         if (axis.role == ACDF_AXIS_INDEXED) {
             if (sampled)

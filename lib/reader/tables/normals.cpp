@@ -160,8 +160,11 @@ private:
     void put_tile(const Open& at, u32 number) {
         const AcdfGrid grid = {parts_.axes[ACDF_AXIS_PHI].resolution, parts_.axes[ACDF_AXIS_THETA].resolution,
                                parts_.description->parameterization};
-        array<AcdfTopTile>(rows_->tiles)[number] = {
-            acdf_box_scale(heights_, &grid, at.box), at.node, {at.steps[0], at.steps[1]}, {at.box[0], at.box[1]}};
+        const bool sphere = grid.parameterization != ACDF_PARAM_HALF_ANGLE; // else the pdf is not that of a cell
+        array<AcdfTopTile>(rows_->tiles)[number] = {sphere ? acdf_box_scale(heights_, &grid, at.box) : 0.0,
+                                                    at.node,
+                                                    {at.steps[0], at.steps[1]},
+                                                    {at.box[0], at.box[1]}};
     }
 
     void make_row(u32 row) {

@@ -33,8 +33,6 @@ Status ShaderTables::make(const File& file, ShaderTables& out) noexcept {
     out = ShaderTables();
     if (file.kind() == ACDF_KIND_TABLE)
         return none("it is neither an environment nor a local environment nor a BRDF");
-    if (file.kind() == ACDF_KIND_LOCAL && file.local().data().rows_of_normals)
-        return none("shaders do not read local environments of halvings; make the file with --shape small or fast");
     if (!acdf::make_walk(file, out.block_))
         return none("its cells tilt (--fit pdf), too many share their curves, or memory is too little");
     return {};

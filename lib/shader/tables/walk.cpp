@@ -33,10 +33,11 @@ AcdfLocal local_of(const File& file) {
     }
     const AcdfBrdf brdf = file.brdf().data();
     local.environment.tree = brdf.tree;
+    local.environment.halved = brdf.halved;
+    local.rows_of_normals = brdf.rows_of_views;
     local.environment.columns = brdf.columns;
     local.environment.rows = brdf.rows;
     local.environment.parameterization = ACDF_PARAM_HALF_ANGLE;
-    local.blend = brdf.blend;
     local.bins = brdf.bins;
     local.cosine_share = brdf.views->diffuse_share;
     return local;
@@ -49,10 +50,11 @@ public:
           nodes_(environment_.halved ? acdf_halvings_nodes(environment_.halved)
                  : indexed_.top      ? ACDF_TOP_ARRAY(AcdfHalving, indexed_.top, indexed_.top->nodes)
                                      : nullptr),
+          rows_(local_.rows_of_normals),
           cells_(environment_.parameterization, environment_.columns, environment_.rows),
           most_leaves_(2 * std::size_t{file.tree_units()} + 64 +
                        (local_.blend.tiles ? local_.blend.tiles->tile_count : 0) +
-                       (environment_.halved ? environment_.halved->count : 0) +
+                       (environment_.halved ? 2 * std::size_t{environment_.halved->count} : 0) +
                        (indexed_.top ? indexed_.top->top - indexed_.top->nodes : 0)) {}
 
     bool make();
@@ -68,15 +70,27 @@ private:
     };
 
     bool brdf() const { return file_.kind() == ACDF_KIND_BRDF; }
+    // Whether steps of an axis are rows of half-vectors (ACDF_HALF_ROWS).
+    bool is_of_rows(u32 axis) const { return axis == 1 && brdf() && rows_; }
     u32 node(u32 axis, u32 position, u32 chance);
     u32 tree(const std::uint8_t* tree, u32 root, const Cell& box, u32 light);
     u32 halvings(u32 at, const AcdfSpan* steps, const Cell& box);
     u32 environment();
-    u32 tile(u32 at);
+    u32 tile(const AcdfTopTile& tile);
     u32 top(u32 at);
+    u32 row_split(u32 at);
+    const AcdfTopTile& map_tile(u32 at) const {
+        return ACDF_TOP_ARRAY(AcdfTopTile, indexed_.top, indexed_.top->tiles)[at];
+    }
     u32 curve(const Divided& divided, const AcdfCurve& curve, u32 first, u32 last);
     u32 splits(u32 node, const Cell& box);
     u32 leaf(const Cell& cell, u32 light);
+    struct CodedRows {
+        const std::uint8_t* bytes = nullptr;
+        std::size_t stride = 0, count = 0;
+    };
+    CodedRows coded_rows() const;
+    double share_of(u32 code) const;
     float unit() const;
     bool bins();
     bool views();
@@ -85,7 +99,8 @@ private:
     AcdfLocal local_;
     AcdfEnvironment environment_;
     AcdfIndexed indexed_;
-    const AcdfHalving* nodes_; // of the tree, if it is one of halvings
+    const AcdfHalving* nodes_;   // of the tree, if it is one of halvings
+    const AcdfNormalRows* rows_; // at its top, of normals or views; null: there are none
     WalkCells cells_;
     std::size_t most_leaves_, leaves_ = 0;
     bool failed_ = false;
@@ -97,7 +112,8 @@ private:
 };
 
 u32 WalkMaker::node(u32 axis, u32 position, u32 chance) {
-    const u32 at = parts_.add(WalkNode{axis << 31 | cells_.key(axis, position), 0, 0, chance});
+    const u32 step = is_of_rows(axis) ? acdf_half_row(position) : position;
+    const u32 at = parts_.add(WalkNode{axis << 31 | cells_.key(axis, step), 0, 0, chance});
     failed_ = failed_ || parts_.failed();
     return at;
 }
@@ -105,7 +121,12 @@ u32 WalkMaker::node(u32 axis, u32 position, u32 chance) {
 u32 WalkMaker::leaf(const Cell& cell, u32 light) {
     if (++leaves_ > most_leaves_ || cell.tilted) failed_ = true;
     if (cell.dark || failed_) return ACDF_WALK_LEAF; // the first one
-    const u32 link = cells_.add(cell, light, parts_);
+    Cell placed = cell;
+    if (is_of_rows(1)) {
+        placed.first[1] = acdf_half_row(cell.first[1]);
+        placed.last[1] = acdf_half_row(cell.last[1]);
+    }
+    const u32 link = cells_.add(placed, light, parts_);
     failed_ = parts_.failed();
     return link;
 }
@@ -146,9 +167,8 @@ u32 WalkMaker::environment() {
     return halved->count ? halvings(0, steps, cells_.whole()) : leaf(cells_.whole(), 0);
 }
 
-// What maps share.
-u32 WalkMaker::tile(u32 at) {
-    const AcdfTopTile& tile = ACDF_TOP_ARRAY(AcdfTopTile, indexed_.top, indexed_.top->tiles)[at];
+// What maps or rows share.
+u32 WalkMaker::tile(const AcdfTopTile& tile) {
     Cell box = cells_.whole();
     for (u32 axis = 0; axis < 2; ++axis) {
         box.first[axis] = tile.box[axis].end[0];
@@ -164,8 +184,22 @@ u32 WalkMaker::top(u32 at) {
     u32 links[2] = {};
     for (u32 upper = 0; upper < 2 && !failed_; ++upper) {
         const u32 child = split.child[upper];
-        links[upper] = child & ACDF_TOP_TILE ? tile(child & ~ACDF_TOP_TILE) : top(child);
+        links[upper] = child & ACDF_TOP_TILE ? tile(map_tile(child & ~ACDF_TOP_TILE)) : top(child);
     }
+    if (failed_) return ACDF_WALK_LEAF;
+    parts_.nodes[made].lower = links[0];
+    parts_.nodes[made].upper = links[1];
+    return made;
+}
+
+// The same of rows of normals or views, from a split or a tile on.
+u32 WalkMaker::row_split(u32 at) {
+    if (at & ACDF_TOP_TILE) return tile(*acdf_row_tile(rows_, at & ~ACDF_TOP_TILE));
+    const AcdfRowSplit& split = acdf_row_splits(rows_)[at];
+    const u32 made = node(split.place & 1u, split.place >> 2, ACDF_WALK_SPLIT | at);
+    u32 links[2] = {};
+    for (u32 upper = 0; upper < 2 && !failed_; ++upper)
+        links[upper] = row_split(acdf_row_half(rows_, &split, upper));
     if (failed_) return ACDF_WALK_LEAF;
     parts_.nodes[made].lower = links[0];
     parts_.nodes[made].upper = links[1];
@@ -234,7 +268,7 @@ u32 WalkMaker::splits(u32 split, const Cell& box) {
 // A power of two that brings shares, which are only compared, to where the products of floats neither end nor
 // begin.
 float WalkMaker::unit() const {
-    if (!local_.blend.tiles) return 1.0f;
+    if (!local_.blend.tiles && !rows_) return 1.0f;
     float most = 0.0f;
     for (u32 i = 0; i < file_.description().bin_count; ++i) most = std::max(most, local_.bins[i].share);
     for (u32 i = 0; i < local_.bright_tile_count; ++i) most = std::max(most, local_.bright_tiles[i].share);
@@ -243,7 +277,7 @@ float WalkMaker::unit() const {
 
 bool WalkMaker::bins() {
     const u32 count = file_.description().bin_count;
-    const bool trees = !local_.blend.tiles;
+    const bool trees = !local_.blend.tiles && !rows_;
     const float scale = unit();
     const u32* const links = trees ? tree_links_.add(file_.tree_units(), ACDF_WALK_NONE) : nullptr;
     if (trees && !links) return false;
@@ -278,7 +312,7 @@ bool WalkMaker::make() {
     if (!cells_.remember(most_leaves_)) return false;
     if (local_.bright_tile_count > 0 && !light_links_.add(local_.bright_tile_count, ACDF_WALK_LEAF)) return false;
     if (indexed_.top) {
-        mixture_ = indexed_.top->splits ? top(0) : tile(0);
+        mixture_ = indexed_.top->splits ? top(0) : tile(map_tile(0));
         return !failed_ && maps_.make(indexed_);
     }
     if (!brdf()) root_ = environment();
@@ -287,15 +321,29 @@ bool WalkMaker::make() {
         for (u32 i = 0; i < local_.bright_tile_count; ++i) light_links_[i] = local_.bright_tiles[i].tile;
         failed_ = !tiles_.make(local_) || failed_;
     } else if (local_.blend.tiles && !failed_) mixture_ = splits(acdf_blend_root(&local_.blend), cells_.whole());
+    if (rows_ && !failed_) mixture_ = row_split(rows_->splits ? 0 : ACDF_TOP_TILE);
     if (failed_ || (brdf() && !views())) return false;
     return file_.kind() == ACDF_KIND_ENVIRONMENT || bins();
 }
 
-bool WalkMaker::assemble(AcdfBlock& block) const {
+// Codes of rows, a byte a split.
+WalkMaker::CodedRows WalkMaker::coded_rows() const {
     const AcdfTiles* const tiles = local_.blend.tiles;
-    const bool coded = tiles && !local_.fast.grid;
-    const std::size_t stride = coded ? tiles->tile_count - 1 : 0, rows = coded ? stride * tiles->row_count : 0;
-    const std::size_t codes = coded ? 512 : 0, bright_tiles = 8 * std::size_t{local_.bright_tile_count};
+    if (rows_) return {ACDF_TOP_ARRAY(std::uint8_t, rows_, rows_->codes), rows_->stride, rows_->rows};
+    if (!tiles || local_.fast.grid) return {};
+    return {local_.blend.rows, tiles->tile_count - std::size_t{1}, tiles->row_count};
+}
+
+// What a code gives to the lower half of a split.
+double WalkMaker::share_of(u32 code) const {
+    if (!rows_) return local_.blend.tiles->codebook[code] / 65535.0;
+    return code <= rows_->last ? ACDF_TOP_ARRAY(u32, rows_, rows_->shares)[code] * 0x1p-31 : 0.0;
+}
+
+bool WalkMaker::assemble(AcdfBlock& block) const {
+    const CodedRows coded = coded_rows();
+    const std::size_t rows = coded.stride * coded.count;
+    const std::size_t codes = coded.bytes ? 512 : 0, bright_tiles = 8 * std::size_t{local_.bright_tile_count};
     const std::size_t words = ACDF_WALK_HEADER_WORDS +
                               (parts_.nodes.bytes() + parts_.leaves.bytes() + bins_.bytes() + views_.bytes()) / 4 +
                               codes + bright_tiles + rows / 4 + 1 + tiles_.words() + maps_.words();
@@ -320,7 +368,7 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     out[ACDF_WALK_COLUMNS] = local_.columns;
     out[ACDF_WALK_ROWS] = local_.rows;
     out[ACDF_WALK_BIN_COUNT] = brdf() ? 0 : static_cast<u32>(bins_.size() / 2);
-    out[ACDF_WALK_STRIDE] = static_cast<u32>(stride);
+    out[ACDF_WALK_STRIDE] = static_cast<u32>(coded.stride);
     out[ACDF_WALK_BRIGHT_TILE_COUNT] = local_.bright_tile_count;
     out[ACDF_WALK_COSINE] = float_bits(local_.cosine_share);
     out[ACDF_WALK_FAST] = local_.fast.grid != nullptr;
@@ -336,8 +384,9 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     place(ACDF_WALK_BINS, bins_.data(), bins_.bytes());
     if (codes > 0) out[ACDF_WALK_CODES] = static_cast<u32>(at);
     for (std::size_t i = 0; i < codes / 2; ++i) {
-        out[at++] = float_bits(tiles->codebook[i] / 65535.0);
-        out[at++] = float_bits((65535.0 - tiles->codebook[i]) / 65535.0);
+        const double lower = share_of(static_cast<u32>(i));
+        out[at++] = float_bits(lower);
+        out[at++] = float_bits(1.0 - lower);
     }
     if (bright_tiles > 0) out[ACDF_WALK_BRIGHT_TILES] = static_cast<u32>(at);
     for (u32 i = 0; i < local_.bright_tile_count; ++i) {
@@ -348,7 +397,7 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
         out[at + 5] = light_links_[i];
         at += 8;
     }
-    place(ACDF_WALK_CODE_ROWS, local_.blend.rows, rows);
+    place(ACDF_WALK_CODE_ROWS, coded.bytes, rows);
     if (local_.fast.grid) tiles_.place(local_, out, at);
     if (indexed_.top) maps_.place(out, at);
     return true;

@@ -15,7 +15,6 @@ namespace {
 constexpr std::size_t kCount = 1000;
 
 using File = std::unique_ptr<AcdfFile, decltype(&acdf_close)>;
-using Batch = std::unique_ptr<AcdfBrdfBatch, decltype(&acdf_brdf_batch_close)>;
 
 File golden(const char* name) {
     return {acdf_open((std::string(ACDF_TEST_DIR "/golden/v1.0/") + name + ".acdf").c_str(), nullptr), acdf_close};
@@ -77,51 +76,19 @@ TEST(BatchArrays, OfLocalEnvironmentsAreThoseOfSingleCalls) {
     }
 }
 
-TEST(BatchArrays, OfBrdfsAreThoseOfSingleCalls) {
-    for (const char* name : {"brdf", "brdf_anisotropic"}) {
-        const File file = golden(name);
-        ASSERT_TRUE(file);
-        AcdfError error;
-        const Batch batch(acdf_brdf_batch(file.get(), &error), acdf_brdf_batch_close);
-        ASSERT_TRUE(batch) << error.message;
-        const std::vector<double> u = numbers();
-        const std::vector<float> views = directions(0.0);
-        for (const std::size_t each : {std::size_t{1}, std::size_t{7}, kCount}) {
-            Results single, many;
-            acdf_sample_brdf_array(file.get(), views.data(), each, u.data(), kCount, single.w.data(),
-                                   single.p.data());
-            acdf_pdf_brdf_array(file.get(), views.data(), each, single.w.data(), kCount, single.again.data());
-            EXPECT_EQ(acdf_brdf_batch_sample(batch.get(), views.data(), each, u.data(), kCount, many.w.data(),
-                                             many.p.data()),
-                      1);
-            EXPECT_EQ(
-                acdf_brdf_batch_pdf(batch.get(), views.data(), each, many.w.data(), kCount, many.again.data()), 1);
-            EXPECT_TRUE(single == many) << name << ' ' << each;
-        }
-    }
-}
-
 TEST(BatchArrays, WriteNothingOfOtherKinds) {
-    const File environment = golden("zlib"), local = golden("local"), brdf = golden("brdf");
-    ASSERT_TRUE(environment && local && brdf);
+    const File environment = golden("zlib"), local = golden("local");
+    ASSERT_TRUE(environment && local);
     const std::vector<double> u = numbers();
     const std::vector<float> w = directions(-1.0);
     Results untouched, results;
-    AcdfError error = {};
     EXPECT_EQ(acdf_local_batch_sample(environment.get(), w.data(), 1, u.data(), kCount, results.w.data(),
                                       results.p.data()),
               0);
     EXPECT_EQ(
         acdf_local_batch_sample(local.get(), w.data(), 0, u.data(), kCount, results.w.data(), results.p.data()), 0);
     EXPECT_EQ(acdf_local_batch_pdf(environment.get(), w.data(), 1, w.data(), kCount, results.p.data()), 0);
-    const Batch batch(acdf_brdf_batch(brdf.get(), nullptr), acdf_brdf_batch_close);
-    EXPECT_EQ(
-        acdf_brdf_batch_sample(batch.get(), w.data(), 0, u.data(), kCount, results.w.data(), results.p.data()), 0);
-    EXPECT_EQ(acdf_brdf_batch_pdf(batch.get(), w.data(), 0, w.data(), kCount, results.p.data()), 0);
-    EXPECT_EQ(acdf_brdf_batch(local.get(), &error), nullptr);
-    EXPECT_EQ(error.code, ACDF_UNSUPPORTED);
     EXPECT_TRUE(untouched == results);
-    acdf_brdf_batch_close(nullptr);
 }
 
 } // namespace

@@ -3,8 +3,6 @@
 #include "tests/lib/product/product_points.h"
 #include "tests/lib/reader/load.h"
 
-#include "batch/brdf.h"
-
 #include <acdf/product/product_c.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>

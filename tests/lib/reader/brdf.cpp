@@ -1,5 +1,6 @@
 // acdf/brdf.h against a decoder written from the specification (SPEC.md §11), on files of which no fit would
 // think.
+#include "tests/lib/reader/brdf_forms.h"
 #include "tests/lib/reader/brdf_loaded.h"
 
 #include <acdf/acdf.h>
@@ -11,6 +12,8 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <stdexcept>
+#include <vector>
 
 using namespace acdf_test;
 
@@ -23,22 +26,26 @@ Direction at_angles(double cosine, double phi) {
     return {float(s * std::cos(phi)), float(s * std::sin(phi)), float(cosine)};
 }
 
-/// Probability that a row gives to the cell of a square, and the cell.
-struct Cell {
-    double probability = 1.0;
-    std::uint32_t low[2], high[2];
-};
-Cell cell_of(const BrdfSpec& spec, std::size_t row, const std::uint32_t square[2]) {
-    Cell cell{1.0, {0, 0}, {spec.columns, spec.rows}};
-    for (std::uint32_t node = 0; !(node & tile_flag);) {
-        const SplitSpec& split = spec.splits[node];
-        const double lower = spec.codebook[spec.codes[row][node]] / 65535.0;
-        const bool upper = square[split.axis] >= split.position;
-        cell.probability *= upper ? 1.0 - lower : lower;
-        (upper ? cell.low : cell.high)[split.axis] = split.position;
-        node = split.child[upper];
-    }
-    return cell;
+/// Where a row of half-vectors begins, in steps of 2^-28 of 1 - cos(theta_h).
+double begin_of_row(std::uint32_t row) {
+    const double t = std::max(0.0, (double(row) - 152.0) / 360.0), sine = std::sin(0.25 * pi * t * t);
+    return std::max<double>(row, std::floor(2.0 * sine * sine * std::ldexp(1.0, 28) * (1.0 + 1e-15)));
+}
+
+/// The row that holds a position.
+std::uint32_t row_of(double position) {
+    std::uint32_t row = 0;
+    while (row + 1 < BrdfSpec::half_rows && begin_of_row(row + 1) <= position) ++row;
+    return row;
+}
+
+/// Of the cells of a row that which holds a square.
+const RowCell& cell_of(const std::vector<RowCell>& cells, const std::uint32_t square[2]) {
+    for (const RowCell& cell : cells)
+        if (square[0] >= cell.box[0][0] && square[0] < cell.box[0][1] && square[1] >= cell.box[1][0] &&
+            square[1] < cell.box[1][1])
+            return cell;
+    throw std::logic_error("cells leave a gap");
 }
 
 /// Bins and weights of a view.
@@ -63,7 +70,28 @@ std::vector<std::pair<std::size_t, double>> weights_of(const BrdfSpec& spec, con
     return out;
 }
 
-double expected_pdf(const BrdfSpec& spec, const Direction& wo, const Direction& wi) {
+/// Weights of rows, times the shares of their bins, as whole numbers (SPEC.md §15.2, step 3).
+std::vector<std::pair<std::size_t, double>> whole_weights_of(const BrdfSpec& spec, const Direction& wo) {
+    std::vector<std::pair<std::size_t, double>> out;
+    double sum = 0.0, left = std::ldexp(1.0, 21);
+    for (const auto& [bin, weight] : weights_of(spec, wo))
+        if (const double w = weight * double{spec.bins[bin].share}; w > 0.0) {
+            out.push_back({bin, w});
+            sum += w;
+        }
+    auto most = out.begin();
+    for (auto at = out.begin(); at != out.end(); ++at)
+        if (at->second > most->second) most = at;
+    for (auto& [bin, w] : out) {
+        w = std::max(1.0, std::floor(w / sum * std::ldexp(1.0, 21) + 0.5));
+        left -= w;
+    }
+    most->second += left;
+    return out;
+}
+
+double expected_pdf(const BrdfSpec& spec, const std::vector<std::vector<RowCell>>& rows, const Direction& wo,
+                    const Direction& wi) {
     double h[3], length = 0.0, dot = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
         h[k] = double{wo[k]} + double{wi[k]};
@@ -77,33 +105,45 @@ double expected_pdf(const BrdfSpec& spec, const Direction& wo, const Direction& 
     if (spec.azimuths == 1) phi -= std::atan2(double{wo[1]}, double{wo[0]});
     phi = std::remainder(phi, 2.0 * pi);
     const double x = spec.flags & 1 ? spec.columns * std::abs(phi) / pi : spec.columns * (0.5 + phi / (2.0 * pi));
-    const double y = spec.rows * (1.0 - h[2] / length);
     const std::uint32_t square[2] = {std::min(static_cast<std::uint32_t>(x), spec.columns - 1),
-                                     std::min(static_cast<std::uint32_t>(y), spec.rows - 1)};
+                                     row_of(std::ldexp(1.0 - h[2] / length, 28))};
     double sum = 0.0, all = 0.0, area = 1.0;
-    for (const auto& [bin, weight] : weights_of(spec, wo)) {
-        const double w = weight * double{spec.bins[bin].share};
-        const Cell cell = cell_of(spec, spec.bins[bin].root, square);
+    for (const auto& [bin, w] : whole_weights_of(spec, wo)) {
+        const RowCell& cell = cell_of(rows[spec.bins[bin].root], square);
         sum += w * cell.probability;
         all += w;
-        area = double(cell.high[0] - cell.low[0]) / spec.columns * 2.0 * pi * double(cell.high[1] - cell.low[1]) /
-               spec.rows;
+        area = double(cell.box[0][1] - cell.box[0][0]) / spec.columns * 2.0 * pi *
+               std::ldexp(begin_of_row(cell.box[1][1]) - begin_of_row(cell.box[1][0]), -28);
     }
     const double light = sum / all / area / (4.0 * std::abs(dot));
     const double share = double{spec.diffuse_share};
     return (1.0 - share) * light + share * std::max(0.0, double{wi[2]}) / pi;
 }
 
-/// Specs of all forms with rows: mirrored, not, with azimuths, with a diffuse share.
+/// Specs of all forms with rows: mirrored, not, with azimuths, with a diffuse share, of any tree.
 std::vector<BrdfSpec> shared_forms() {
-    std::vector<BrdfSpec> out(4, shared_brdf());
-    out[1].flags = 0;
-    out[2].flags = 0;
-    out[2].azimuths = 4;
-    out[2].bins.clear();
-    for (std::uint32_t b = 0; b < 12; ++b) out[2].bins.push_back({b % 3, 0.05f + 0.01f * float(b)});
-    out[3].diffuse_share = 0.3f;
+    std::vector<BrdfSpec> out;
+    for (auto& [name, spec] : brdf_forms()) {
+        if (!spec.is_halved() || name == "one view") continue;
+        for (BinSpec& bin : spec.bins) bin.share = std::max(bin.share, 0.1f); // every view has a table
+        out.push_back(spec);
+    }
     return out;
+}
+
+// Halving meets the borders of measurements that tabulate sqrt(theta_h) in 90 steps; each row has a step.
+TEST(BrdfReader, rowsOfHalfVectorsBeginWhereTheSpecificationSays) {
+    EXPECT_EQ(acdf_half_row(0), 0u);
+    EXPECT_EQ(acdf_half_row(BrdfSpec::half_rows), 1u << 28);
+    std::vector<double> begins;
+    for (std::uint32_t row = 0; row <= BrdfSpec::half_rows; ++row) {
+        begins.push_back(acdf_half_row(row));
+        EXPECT_EQ(begins.back(), begin_of_row(row)) << row;
+        EXPECT_TRUE(row == 0 || begins[row] > begins[row - 1]) << row;
+    }
+    for (std::uint32_t row = 0; row < BrdfSpec::half_rows; ++row)
+        for (const double t : {0.0, 0.5, 1.0 - 0x1p-20})
+            EXPECT_EQ(acdf_half_row_of(begins.data(), begins[row] + t * (begins[row + 1] - begins[row])), row) << t;
 }
 
 TEST(BrdfReader, evaluatesAsTheSpecificationSays) {
@@ -112,10 +152,12 @@ TEST(BrdfReader, evaluatesAsTheSpecificationSays) {
     for (const BrdfSpec& given : shared_forms()) {
         BrdfSpec spec = given;
         const Loaded loaded(spec.encode());
+        std::vector<std::vector<RowCell>> rows;
+        for (std::size_t row = 0; row < spec.halved.rows.size(); ++row) rows.push_back(spec.cells(row));
         for (int i = 0; i < 5000; ++i) {
             const Direction wo = at_angles(0.02 + 0.97 * u(random), 2.0 * pi * u(random));
             const Direction wi = at_angles(2.0 * u(random) - 1.0, 2.0 * pi * u(random));
-            const double expected = expected_pdf(spec, wo, wi);
+            const double expected = expected_pdf(spec, rows, wo, wi);
             ASSERT_NEAR(loaded.view().pdf(wo.data(), wi.data()), expected, 2e-5 * expected) << i;
         }
     }

@@ -101,13 +101,15 @@ TEST_P(BrdfInvert, drawsAnyDirection) {
 // Nearer than floats resolve: a sample that would come to lie beyond the border is moved by a part of its cell.
 TEST_P(BrdfInvert, drawsDirectionsAtTheBordersOfCells) {
     const AcdfBrdf& brdf = view_.data();
-    for (std::size_t n = 0; n < 40 * std::min<std::size_t>(spec_.splits.size(), 100); ++n) {
-        const SplitSpec& split = spec_.splits[n / 40 * 7919 % spec_.splits.size()];
+    const std::vector<RowCell> cells = spec_.is_halved() ? spec_.cells(0) : std::vector<RowCell>();
+    for (std::size_t n = 0; n < 40 * std::min<std::size_t>(cells.size(), 100); ++n) {
+        const RowCell& cell = cells[n / 40 * 7919 % cells.size()];
+        const std::size_t axis = n % 2;
         const Direction wo = some_wo(static_cast<int>(n));
         AcdfBrdfView at;
         ASSERT_TRUE(acdf_brdf_view(&brdf, wo.data(), &at));
-        double position[2] = {spec_.columns * uniform(), spec_.rows * uniform()}, reach[2];
-        position[split.axis] = split.position;
+        double position[2] = {brdf.columns * uniform(), brdf.rows * uniform()}, reach[2];
+        position[axis] = axis == 0 ? cell.box[0][1] : acdf_half_row(cell.box[1][1]);
         Direction wi;
         acdf_brdf_reflect(&brdf, &at, position, 1.0, wi.data(), reach);
         expect_back(wo, wi);

@@ -47,8 +47,8 @@ TEST(GoldenBrdfContents, EachFileHasWhatItIsFor) {
     EXPECT_TRUE(acdf_brdf_mirrored(&mirrored.brdf().data()));
     EXPECT_EQ(turned.brdf().data().views->phi_count, 4u);
     EXPECT_EQ(floored.brdf().data().views->diffuse_share, 0.25f);
-    EXPECT_NE(brdf.blend().tiles, nullptr);
-    EXPECT_EQ(separate.blend().tiles, nullptr);
+    EXPECT_NE(brdf.brdf().data().halved, nullptr);
+    EXPECT_EQ(separate.brdf().data().halved, nullptr);
 }
 
 } // namespace

@@ -1,18 +1,19 @@
 // BRDFs for shaders beside the reader's: each sample has the pdf that both return for its direction, samples are
 // the reader's, and so are pdfs, but for the rounding of floats and directions next to a border.
-#include "tests/lib/batch/brdf.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/brdf_forms.h"
+#include "tests/lib/reader/brdf_queries.h"
 #include "tests/lib/reader/golden_files.h"
 #include "tests/lib/reader/half_vectors.h"
-#include "tests/lib/reader/local_random.h"
 #include "tests/lib/shader/walked_file.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 namespace {
 
@@ -33,8 +34,10 @@ public:
     }
     acdf::DirectionSample read(double u0, double u1) const { return file_.file.brdf().sample(wo_, u0, u1); }
     float read_pdf(const float d[3]) const { return file_.file.brdf().pdf(wo_, d); }
-    double rounds(const float d[3]) const { return Halves(wo_, d).rounded(); }
-    double moves(const float d[3]) const { return Halves(wo_, d).moved(); }
+    /// How much pdfs differ that are the same: by rounding, and as the reader counts whole steps of rows.
+    double rounds(const float d[3]) const { return Halves(wo_, d).rounded() + counted(d); }
+    bool has_rows() const { return file_.file.brdf().data().halved; }
+    double moves(const float d[3]) const { return Halves(wo_, d).moved() + counted(d); }
 
     /// Whether the reader has this pdf for directions that floats hardly distinguish from these, or less and more
     /// of it, a hundredth apart: next to the azimuth of a view the share of the other view is known to few digits.
@@ -48,7 +51,7 @@ public:
                 wi[axis] = d[axis] + (k < 27 ? step : 0.0f);
             }
             const float told = file_.file.brdf().pdf(wo, wi);
-            if (nearly(pdf, told, 1e-4 + Halves(wo, wi).moved())) return true;
+            if (nearly(pdf, told, 1e-4 + Halves(wo, wi).moved() + counted(d))) return true;
             less |= told < pdf && told > 0.995f * pdf;
             more |= told > pdf && told < 1.005f * pdf;
         }
@@ -56,6 +59,26 @@ public:
     }
 
 private:
+    /// The reader counts steps of rows, out of 2^31, and weights of rows, out of 2^21, in whole numbers: each split
+    /// is off by up to a step.
+    double counted(const float d[3]) const {
+        const AcdfBrdf& brdf = file_.file.brdf().data();
+        AcdfBrdfView view;
+        AcdfBrdfPosition place;
+        double side, most = 0.0;
+        if (!brdf.halved || !acdf_brdf_view(&brdf, wo_, &view) || view.mix.count == 0) return 0.0;
+        if (!acdf_brdf_half_position(&brdf, &view, d, &place, &side)) return 0.0;
+        const std::uint32_t square[2] = {acdf_brdf_step(place.position[0], brdf.columns),
+                                         acdf_half_row_of(acdf_halved_heights(brdf.halved), place.position[1])};
+        const std::uint32_t group = acdf_rows_find_group(brdf.rows_of_views, square);
+        AcdfRowSteps steps = acdf_rows_of_group(brdf.rows_of_views, &view.mix, group);
+        acdf_rows_find_below(brdf.rows_of_views, &view.mix, acdf_row_group(brdf.rows_of_views, group), &steps,
+                             square);
+        for (int k = 0; k < view.mix.count; ++k)
+            if (steps.of[k] > 0) most = std::max({most, 32.0 / steps.of[k], 1.0 / view.mix.weight[k]});
+        return most;
+    }
+
     const WalkedFile& file_;
     float wo_[3];
     AcdfShaderView shader_;
@@ -93,11 +116,12 @@ void compare_brdf_sample(const BrdfPoint& point, std::uint32_t n0, std::uint32_t
     }
     ASSERT_NEAR(std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), 1.0, 1e-6);
     compare_brdf_pdf(point, d, counted);
-    counted.other_cells += !nearly(s.pdf, told.pdf, 1e-3 + point.moves(d));
+    // Of rows other numbers lead to a cell than in the reader.
+    counted.other_cells += !point.has_rows() && !nearly(s.pdf, told.pdf, 1e-3 + point.moves(d));
 }
 
 BrdfCounted compare_brdf(const WalkedFile& file, std::size_t count) {
-    const Queries asked(file.file.brdf(), count);
+    const BrdfQueries asked(file.file.brdf(), count);
     BrdfCounted counted, ends;
     for (std::size_t i = 0; i < count && !testing::Test::HasFatalFailure(); ++i) {
         const BrdfPoint point(file, asked.wo()[i]);
@@ -147,34 +171,6 @@ TEST(ShaderBrdf, AnswersAsTheReaderOnEveryForm) {
     expect_few(all);
 }
 
-/// Splits, rows, codebooks and trees of a random local environment as those of a BRDF.
-BrdfSpec random_brdf(std::uint32_t seed) {
-    std::mt19937 random(seed);
-    RandomOptions options = varied_options(seed);
-    options.tilts = false;
-    options.rows = seed % 4 == 1 ? 1u << 16 : options.rows;
-    const LocalSpec local = RandomLocal(seed, options).make();
-    BrdfSpec spec;
-    spec.columns = options.columns;
-    spec.rows = options.rows;
-    spec.azimuths = seed % 3 == 2 ? 1 + std::uint32_t(random() % 9) : 1;
-    spec.flags = spec.azimuths == 1 ? random() % 2 : 0;
-    spec.diffuse_share = random() % 2 ? 0.0f : 0x1p-32f * static_cast<float>(random());
-    spec.tree = local.tree;
-    spec.splits = local.splits;
-    spec.codebook = local.codebook;
-    spec.codes = local.codes;
-    spec.tile_curves = local.tile_curves;
-    const std::uint32_t views = 1 + std::uint32_t(random() % 40);
-    for (std::uint32_t i = 0; i < views; ++i)
-        spec.nodes.push_back((static_cast<float>(i) + 0x1p-33f * static_cast<float>(random())) / float(views));
-    const auto rows = static_cast<std::uint32_t>(spec.splits.empty() ? 1 : spec.codes.size());
-    for (std::uint32_t i = 0; i < views * spec.azimuths; ++i)
-        spec.bins.push_back({static_cast<std::uint32_t>(random() % rows),
-                             random() % 8 == 0 ? 0.0f : std::exp(0x1p-30f * static_cast<float>(random()))});
-    return spec;
-}
-
 TEST(ShaderBrdf, AnswersAsTheReaderOnRandomFiles) {
     BrdfCounted all;
     for (std::uint32_t seed = 0; seed < 100; seed += acdf_test::kSanitized ? 3 : 1) {
@@ -185,6 +181,46 @@ TEST(ShaderBrdf, AnswersAsTheReaderOnRandomFiles) {
         if (HasFatalFailure()) return;
     }
     expect_few(all);
+}
+
+// Each cell of the reader gets as many samples as it has probability.
+TEST(ShaderBrdf, SamplesFollowTheirPdf) {
+    for (const std::uint32_t flags : {0u, 1u}) {
+        BrdfSpec spec = shared_brdf();
+        spec.flags = flags;
+        const WalkedFile file(spec.encode());
+        ASSERT_TRUE(file.status.ok()) << file.status.message;
+        const AcdfBrdf& brdf = file.file.brdf().data();
+        const float wo[3] = {0.48f, 0.36f, 0.8f};
+        const BrdfPoint point(file, wo);
+        AcdfBrdfView view;
+        ASSERT_TRUE(acdf_brdf_view(&brdf, wo, &view));
+        struct Cell {
+            double probability = 0.0;
+            int samples = 0;
+        };
+        std::map<std::array<std::uint32_t, 2>, Cell> cells;
+        constexpr std::uint32_t side = 256;
+        for (std::uint32_t i = 0; i < side * side; ++i) {
+            const AcdfWalkSample s = point.sample((i % side << 24) + 0x7FFFFFu, (i / side << 24) + 0x7FFFFFu);
+            const float d[3] = {s.x, s.y, s.z};
+            AcdfBrdfPosition place;
+            AcdfRange range[2];
+            double sign;
+            ASSERT_TRUE(acdf_brdf_half_position(&brdf, &view, d, &place, &sign));
+            const double p = acdf_brdf_find(&brdf, &view, &place, range, nullptr);
+            Cell& cell = cells[{range[0].low, range[1].low}];
+            cell.probability = p;
+            ++cell.samples;
+        }
+        double all = 0.0;
+        for (const auto& [corner, cell] : cells) {
+            EXPECT_NEAR(cell.samples / double(side * side), cell.probability, 4e-3)
+                << corner[0] << ' ' << corner[1];
+            all += cell.probability;
+        }
+        EXPECT_NEAR(all, 1.0, 1e-9);
+    }
 }
 
 TEST(ShaderBrdf, NothingIsReflectedBelowTheSurface) {

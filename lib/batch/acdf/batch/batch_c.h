@@ -21,17 +21,6 @@ int acdf_local_batch_sample(const AcdfFile* file, const float* normals, size_t e
 int acdf_local_batch_pdf(const AcdfFile* file, const float* normals, size_t each, const float* directions,
                          size_t count, float* pdfs);
 
-/* Of a BRDF file, by tables of some four times the file beside its own. Null where memory fails or the file is of
- * another kind. `error` may be null. Ends with acdf_brdf_batch_close, before its file does. */
-typedef struct AcdfBrdfBatch AcdfBrdfBatch;
-AcdfBrdfBatch* acdf_brdf_batch(const AcdfFile* file, struct AcdfError* error);
-int acdf_brdf_batch_sample(const AcdfBrdfBatch* batch, const float* wo, size_t each, const double* u, size_t count,
-                           float* wi, float* pdfs);
-int acdf_brdf_batch_pdf(const AcdfBrdfBatch* batch, const float* wo, size_t each, const float* wi, size_t count,
-                        float* pdfs);
-uint64_t acdf_brdf_batch_bytes(const AcdfBrdfBatch* batch); /* of the tables; 0: there are none */
-void acdf_brdf_batch_close(AcdfBrdfBatch* batch);           /* null is allowed */
-
 #ifdef __cplusplus
 }
 #endif

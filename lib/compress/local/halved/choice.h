@@ -11,8 +11,6 @@ namespace acdf::compress {
 
 /// Of bins the share that has a code at a halving, about.
 constexpr double kSeen = 0.58;
-/// Bits of a halving in HALV, and in NORM beside codes.
-constexpr double kSharedBits = 8 + 3;
 
 /// Subdivisions of the octahedron, and bits of a code in rows.
 struct RowSize {
@@ -26,10 +24,5 @@ double mixing_variance(const Blocks& blocks, const BlockMoments& light, const st
 /// The size that leaves the least noise in `bytes`: bins that are further apart mix worse, bins that are closer
 /// leave bytes for fewer tiles. `fixed`: if not 0, the subdivisions.
 RowSize choose_rows(const HalvedGrowth& top, double mixing, double bytes, double of_bin, std::uint32_t fixed);
-
-/// How many halvings have codes of rows, `row_bits` each, so that a bit gains alike there and below. `below`: costs
-/// of what rows share, which are `unit` times those of the top.
-std::size_t choose_top(const HalvedGrowth& top, const HalvedCosts& below, double unit, double row_bits,
-                       double bytes);
 
 } // namespace acdf::compress

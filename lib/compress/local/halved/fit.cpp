@@ -1,6 +1,7 @@
 #include "compress/local/halved/fit.h"
 
 #include "compress/halvings/code_bits.h"
+#include "compress/halvings/row_size.h"
 #include "compress/halvings/rows.h"
 #include "compress/local/halved/filled_rows.h"
 #include "compress/local/halved/tile_light.h"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 namespace acdf::compress {
@@ -24,28 +24,6 @@ constexpr double kFilledSubdivisions = 8.0, kFilledAt = 131072.0, kFilledRises =
 constexpr std::size_t kFewestCells = 4;
 constexpr double kFewestRows = 387.0, kFewestAt = 1048576.0, kFewestFalls = 0.6; // rows that a size has at least
 
-std::size_t words(std::size_t bits) { return (bits + 31) / 32 * 4; }
-
-std::size_t whole_chunk(std::size_t bytes) {
-    return (bytes + ACDF_ALIGNMENT - 1) / ACDF_ALIGNMENT * ACDF_ALIGNMENT;
-}
-
-std::size_t bytes_of(std::size_t halvings, std::size_t codes, std::uint32_t code_bits) {
-    return whole_chunk(halvings_bytes(halvings + 1, kAxisBits, kSharedCodeBits)) +
-           whole_chunk(sizeof(AcdfNormalsHeader) + words(halvings) + words(codes * code_bits));
-}
-
-/// The most halvings with which chunks take at most `bytes`.
-std::size_t halvings_within(std::uint64_t bytes, std::size_t codes, std::uint32_t code_bits) {
-    std::size_t low = 0, high = std::min<std::uint64_t>(bytes, ACDF_MOST_HALVINGS);
-    while (low < high) {
-        const std::size_t middle = low + (high - low + 1) / 2;
-        if (bytes_of(middle, codes, code_bits) <= bytes) low = middle;
-        else high = middle - 1;
-    }
-    return low;
-}
-
 std::size_t codes_in(const LocalHalvings& fit) {
     std::size_t codes = 0;
     for (const std::vector<std::uint16_t>& row : fit.rows) codes += row.size();
@@ -53,16 +31,6 @@ std::size_t codes_in(const LocalHalvings& fit) {
 }
 
 } // namespace
-
-Chunk normals_chunk(const LocalHalvings& fit) {
-    const auto splits = static_cast<std::uint32_t>(std::count(fit.has_codes.begin(), fit.has_codes.end(), true));
-    const AcdfNormalsHeader header = {static_cast<std::uint32_t>(fit.rows.size()), splits, fit.code_bits, 0};
-    Chunk chunk{ACDF_CHUNK_NORMALS, {}};
-    chunk.bytes.resize(sizeof header);
-    std::memcpy(chunk.bytes.data(), &header, sizeof header);
-    put_rows(fit.has_codes, fit.rows, fit.code_bits, chunk.bytes);
-    return chunk;
-}
 
 LocalHalvingsFitter::LocalHalvingsFitter(const Target& target, const NormalBins& normals, const Partner& partner)
     : target_(target), unit_(4.0 * ACDF_PI / integral(target)), blocks_(target), light_(blocks_) {
@@ -294,7 +262,7 @@ LocalHalvings LocalHalvingsFitter::fit(const NormalBins& bins, const LocalHalvin
         top = first_halvings(whole_top.nodes(), halvings);
         codes = codes_of(top, bins);
         const std::size_t least = partner ? std::min(kFewestCells * halvings, target_.values.size() - 1) : halvings;
-        if (bytes_of(std::max(least, halvings), codes, size.code_bits) <= size.bytes) break;
+        if (row_bytes(std::max(least, halvings), codes, size.code_bits) <= size.bytes) break;
         if (halvings == 0) throw std::runtime_error("no tree fits into the budget");
     }
     const auto attempt = [&](std::size_t most_codes, double begin, double end) {
@@ -308,7 +276,7 @@ LocalHalvings LocalHalvingsFitter::fit(const NormalBins& bins, const LocalHalvin
     const std::size_t used = codes_in(out);
     if (!partner || used + used / 32 >= codes) return out;
     LocalHalvings more = attempt(used + used / 64, 0.6, 1.0);
-    return bytes_of(more.halvings.codes.size(), codes_in(more), size.code_bits) <= size.bytes ? more : out;
+    return row_bytes(more.halvings.codes.size(), codes_in(more), size.code_bits) <= size.bytes ? more : out;
 }
 
 } // namespace acdf::compress

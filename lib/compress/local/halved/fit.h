@@ -22,20 +22,12 @@
 namespace acdf::compress {
 
 /// What chunks HALV and NORM hold, and what BINS and COMP say of rows.
-struct LocalHalvings {
-    Halvings halvings;           ///< with the codes of the whole environment
-    std::vector<bool> has_codes; ///< one a halving: rows have a code of their own
-    std::uint32_t code_bits = 7; ///< of these
-    std::vector<std::vector<std::uint16_t>>
-        rows;                               ///< of each, codes of the halvings that it leads random numbers to
+struct LocalHalvings : RowHalvings {
     std::vector<std::uint32_t> roots;       ///< one a bin: its row, or ACDF_NO_ROOT
     std::vector<float> shares;              ///< one a bin: its light over that of the probe
     std::vector<AcdfPartnerRecord> records; ///< beside an MIS partner: one a bin
     double mixing_variance = 0.0; ///< what mixed rows add to those that suit each normal, mean over normals
 };
-
-/// Chunk NORM.
-Chunk normals_chunk(const LocalHalvings& fit);
 
 /// How large the parts of a fit become.
 struct LocalHalvingsSize {

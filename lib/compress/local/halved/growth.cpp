@@ -137,11 +137,4 @@ SharedLight::SharedLight(const Blocks& blocks, std::vector<float> worth, double 
     costs_ = std::make_unique<HalvedSums>(of);
 }
 
-std::vector<HalvedNode> first_halvings(const std::vector<HalvedNode>& nodes, std::size_t halvings) {
-    std::vector<HalvedNode> out(nodes.begin(), nodes.begin() + std::ptrdiff_t(2 * halvings + 1));
-    for (HalvedNode& node : out)
-        if (node.lower >= out.size()) node.lower = 0;
-    return out;
-}
-
 } // namespace acdf::compress

@@ -79,7 +79,4 @@ private:
     std::unique_ptr<HalvedSums> costs_;
 };
 
-/// The first `halvings` of them, which are the top, as a tree of their own.
-std::vector<HalvedNode> first_halvings(const std::vector<HalvedNode>& nodes, std::size_t halvings);
-
 } // namespace acdf::compress

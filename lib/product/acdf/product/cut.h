@@ -75,27 +75,27 @@ ACDF_INLINE uint32_t acdf_cut_node(const AcdfCutPart* part) {
 
 /* The steps of rows of halvings that lead to a part: its weights are these. */
 ACDF_INLINE AcdfRowSteps acdf_cut_steps(const AcdfCutPart* part) {
-    AcdfRowSteps steps;
+    AcdfRowSteps steps = {{0, 0, 0, 0}};
     int k;
     for (k = 0; k < ACDF_NORMALS_MIXED; ++k) steps.of[k] = (uint32_t)part->weight[k];
     return steps;
 }
 ACDF_INLINE void acdf_cut_set_steps(const AcdfRowMixture* mix, const AcdfRowSteps* steps, AcdfCutPart* part) {
     int k;
-    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) part->weight[k] = (double)steps->of[k];
+    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) part->weight[k] = k < mix->count ? (double)steps->of[k] : 0.0;
     part->sum = acdf_rows_mass(mix, steps) * 0x1p-52;
 }
 
 /* acdf_cut_begin where rows of halvings serve a point. */
 ACDF_FN void acdf_cut_begin_rows(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut) {
-    const AcdfRowSteps all = {{ACDF_STEPS, ACDF_STEPS, ACDF_STEPS}};
+    const AcdfRowSteps all = {{ACDF_STEPS, ACDF_STEPS, ACDF_STEPS, ACDF_STEPS}};
     AcdfCutPart* whole = &cut->part[0];
     int k;
     memset(whole, 0, sizeof *whole);
     cut->count = 1;
     cut->nearest = 0;
     cut->hearts = 0;
-    for (k = 1; k < ACDF_NORMALS_MIXED; ++k)
+    for (k = 1; k < point->by.rows.count; ++k)
         if (point->by.rows.weight[k] > point->by.rows.weight[cut->nearest]) cut->nearest = k;
     whole->node = local->rows_of_normals->splits ? 0 : ACDF_TILE_FLAG;
     whole->high[0] = local->environment.columns;

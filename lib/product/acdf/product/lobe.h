@@ -2,8 +2,8 @@
 // only, freestanding. For kernels define ACDF_METHOD, for example as __host__ __device__.
 #pragma once
 
+#include <acdf/brdf.h>
 #include <acdf/method.h>
-#include <acdf/product/brdf_about.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -40,9 +40,7 @@ public:
     /// What is looked up once for a view. Plain data.
     using Point = AcdfBrdfView;
 
-    /// `vectors`: acdf_product_vectors(), for several samples and pdfs at once.
-    ACDF_METHOD explicit BrdfLobe(const AcdfBrdf& data, const AcdfProductVectors* vectors = nullptr) noexcept
-        : data_(data), vectors_(vectors) {}
+    ACDF_METHOD explicit BrdfLobe(const AcdfBrdf& data) noexcept : data_(data) {}
 
     /// False where nothing is reflected to `wo`: it is below the surface or no unit vector.
     ACDF_METHOD bool at(const float wo[3], Point& point) const noexcept {
@@ -61,87 +59,16 @@ public:
         return acdf_brdf_view_sample(&data_, &point, u0, u1);
     }
 
-    /// `pdf` of wi[i] into out[i], i < count. Lobes need not have this.
-    ACDF_METHOD void pdfs(const Point& point, const float (*wi)[3], std::size_t count, float* out) const noexcept {
-        acdf_brdf_view_pdfs(vectors_, &data_, &point, wi, count, out);
-    }
-    /// About those, in less time. Lobes need not have this.
-    ACDF_METHOD void pdfs_about(const Point& point, const float (*wi)[3], std::size_t count,
-                                float* out) const noexcept {
-        acdf_brdf_view_pdfs_about(vectors_, &data_, &point, wi, count, out);
-    }
-    /// `sample` of u[i] into out[i], i < count. Lobes need not have this.
-    ACDF_METHOD void samples(const Point& point, const double (*u)[2], std::size_t count,
-                             ProductSample* out) const noexcept {
-        acdf_brdf_view_samples(vectors_, &data_, &point, u, count, out);
-    }
-    /// About what `sample` samples, in less time, with the pdf there. Lobes need not have this.
-    ACDF_METHOD ProductSample about(const Point& point, double u0, double u1) const noexcept {
-        return acdf_brdf_view_about(&data_, &point, u0, u1);
-    }
-
 private:
     AcdfBrdf data_;
-    const AcdfProductVectors* vectors_;
 };
-
-/// What a lobe is looked at with before a point is divided: `about` where it has that, else `sample`.
-template <class AnyLobe>
-ACDF_METHOD auto lobe_about(const AnyLobe& lobe, const typename AnyLobe::Point& point, double u0, double u1,
-                            int) noexcept -> decltype(lobe.about(point, u0, u1)) {
-    return lobe.about(point, u0, u1);
-}
-template <class AnyLobe>
-ACDF_METHOD ProductSample lobe_about(const AnyLobe& lobe, const typename AnyLobe::Point& point, double u0,
-                                     double u1, long) noexcept {
-    return lobe.sample(point, u0, u1);
-}
 
 /// Sample i of `sampled`, at most 4, that look for a lobe: the points of Hammersley, moved off the borders.
 template <class AnyLobe>
 ACDF_METHOD ProductSample guide(const AnyLobe& lobe, const typename AnyLobe::Point& point, int i,
                                 int sampled) noexcept {
     const int reversed = (i & 1) << 2 | (i & 2) | i >> 2;
-    return lobe_about(lobe, point, (i + 0.5) / sampled, (reversed + 0.5) / 8.0, 0);
-}
-
-/// Pdfs of several directions: `pdfs` where it has that, else `pdf`.
-template <class AnyLobe>
-ACDF_METHOD auto lobe_pdfs(const AnyLobe& lobe, const typename AnyLobe::Point& point, const float (*wi)[3],
-                           std::size_t count, float* out, int) noexcept
-    -> decltype(lobe.pdfs(point, wi, count, out)) {
-    lobe.pdfs(point, wi, count, out);
-}
-template <class AnyLobe>
-ACDF_METHOD void lobe_pdfs(const AnyLobe& lobe, const typename AnyLobe::Point& point, const float (*wi)[3],
-                           std::size_t count, float* out, long) noexcept {
-    for (std::size_t i = 0; i < count; ++i) out[i] = lobe.pdf(point, wi[i]);
-}
-
-/// What a lobe is looked at with in parts: `pdfs_about` where it has that, else as lobe_pdfs.
-template <class AnyLobe>
-ACDF_METHOD auto lobe_pdfs_about(const AnyLobe& lobe, const typename AnyLobe::Point& point, const float (*wi)[3],
-                                 std::size_t count, float* out, int) noexcept
-    -> decltype(lobe.pdfs_about(point, wi, count, out)) {
-    lobe.pdfs_about(point, wi, count, out);
-}
-template <class AnyLobe>
-ACDF_METHOD void lobe_pdfs_about(const AnyLobe& lobe, const typename AnyLobe::Point& point, const float (*wi)[3],
-                                 std::size_t count, float* out, long) noexcept {
-    lobe_pdfs(lobe, point, wi, count, out, 0);
-}
-
-/// Several samples: `samples` where it has that, else `sample`.
-template <class AnyLobe>
-ACDF_METHOD auto lobe_samples(const AnyLobe& lobe, const typename AnyLobe::Point& point, const double (*u)[2],
-                              std::size_t count, ProductSample* out, int) noexcept
-    -> decltype(lobe.samples(point, u, count, out)) {
-    lobe.samples(point, u, count, out);
-}
-template <class AnyLobe>
-ACDF_METHOD void lobe_samples(const AnyLobe& lobe, const typename AnyLobe::Point& point, const double (*u)[2],
-                              std::size_t count, ProductSample* out, long) noexcept {
-    for (std::size_t i = 0; i < count; ++i) out[i] = lobe.sample(point, u[i][0], u[i][1]);
+    return lobe.sample(point, (i + 0.5) / sampled, (reversed + 0.5) / 8.0);
 }
 
 /// A renderer's own BRDF as a lobe. Callables over unit vectors in the surface's frame, wo above the surface:

@@ -231,7 +231,7 @@ ACDF_METHOD void ProductSampler<AnyLobe>::sample_batch(const Point& point, std::
     std::size_t of_light[ACDF_CUT_BATCH], of_lobe[ACDF_CUT_BATCH], lit = 0;
     double rest[ACDF_CUT_BATCH][2];
     ProductSample sampled[ACDF_CUT_BATCH];
-    float directions[ACDF_CUT_BATCH][3], wi[ACDF_CUT_BATCH][3], light[ACDF_CUT_BATCH], lobe[ACDF_CUT_BATCH];
+    float directions[ACDF_CUT_BATCH][3], wi[3], light[ACDF_CUT_BATCH], lobe[ACDF_CUT_BATCH];
     for (std::size_t i = 0; i < count; ++i) {
         const double x = acdf_unit_interval(u[i][0]);
         rest[lit][0] = (x - point.share) / (1.0 - point.share);
@@ -249,18 +249,19 @@ ACDF_METHOD void ProductSampler<AnyLobe>::sample_batch(const Point& point, std::
         rest[k][0] = acdf_unit_interval(u[of_lobe[k]][0]) / point.share;
         rest[k][1] = u[of_lobe[k]][1];
     }
-    lobe_samples(lobe_, point.lobe, rest, reflected, sampled, 0);
-    for (std::size_t k = 0; k < reflected; ++k) point.frame.to_world(sampled[k].direction, directions[k]);
+    for (std::size_t k = 0; k < reflected; ++k) {
+        sampled[k] = lobe_.sample(point.lobe, rest[k][0], rest[k][1]);
+        point.frame.to_world(sampled[k].direction, directions[k]);
+    }
     light_pdfs(point, reflected, directions, lobe);
     for (std::size_t k = 0; k < reflected; ++k) {
         const std::size_t i = of_lobe[k];
         out[i] = {{directions[k][0], directions[k][1], directions[k][2]}, sampled[k].pdf};
         light[i] = lobe[k];
     }
-    for (std::size_t i = 0; i < count; ++i) point.frame.to_local(out[i].direction, wi[i]);
-    lobe_pdfs(lobe_, point.lobe, wi, count, lobe, 0);
     for (std::size_t i = 0; i < count; ++i) {
-        if (out[i].pdf > 0.0f) out[i].pdf = mixed(point, light[i], lobe[i]);
+        point.frame.to_local(out[i].direction, wi);
+        if (out[i].pdf > 0.0f) out[i].pdf = mixed(point, light[i], lobe_.pdf(point.lobe, wi));
         else out[i] = {{0.0f, 0.0f, 0.0f}, 0.0f};
     }
 }
@@ -282,13 +283,14 @@ ACDF_METHOD void ProductSampler<AnyLobe>::pdf(const Point& point, std::size_t co
         for (std::size_t i = 0; i < count; ++i) out[i] = pdf(point, directions[i]);
         return;
     }
-    float wi[ACDF_CUT_BATCH][3], light[ACDF_CUT_BATCH], lobe[ACDF_CUT_BATCH];
+    float wi[3], light[ACDF_CUT_BATCH];
     for (; count > 0;) {
         const std::size_t some = count < ACDF_CUT_BATCH ? count : std::size_t{ACDF_CUT_BATCH};
-        for (std::size_t i = 0; i < some; ++i) point.frame.to_local(directions[i], wi[i]);
         light_pdfs(point, some, directions, light);
-        lobe_pdfs(lobe_, point.lobe, wi, some, lobe, 0);
-        for (std::size_t i = 0; i < some; ++i) out[i] = mixed(point, light[i], lobe[i]);
+        for (std::size_t i = 0; i < some; ++i) {
+            point.frame.to_local(directions[i], wi);
+            out[i] = mixed(point, light[i], lobe_.pdf(point.lobe, wi));
+        }
         count -= some;
         directions += some;
         out += some;

@@ -57,7 +57,7 @@ ACDF_METHOD void CutRating<AnyLobe>::look(int count, const int* parts) noexcept 
         ratings_[parts[i]].tile = acdf_cut_heart(&of_.light, &of_.at, &cut_, parts[i], world);
         of_.above_surface(world, wi[i]);
     }
-    of_.template look<std::size_t{at_once}>(count, of_.parts >= 24, wi, [&](int i, float value, float pdf) {
+    of_.look(count, wi, [&](int i, float value, float pdf) {
         ratings_[parts[i]].value = value;
         ratings_[parts[i]].pdf = pdf;
     });

@@ -162,7 +162,7 @@ ACDF_METHOD void GroupRating<AnyLobe>::look_at_much() noexcept {
 
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::look(const Looks& looks) noexcept {
-    of_.template look<std::size_t{most_parts}>(looks.count, true, looks.wi, [&](int i, float value, float pdf) {
+    of_.look(looks.count, looks.wi, [&](int i, float value, float pdf) {
         value_[looks.part[i]] = value;
         pdf_[looks.part[i]] = pdf;
     });

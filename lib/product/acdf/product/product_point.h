@@ -5,6 +5,7 @@
 #include <acdf/local.h>
 #include <acdf/product/lobe.h>
 #include <acdf/product/part_rating.h>
+#include <acdf/product/vectors.h>
 
 namespace acdf {
 
@@ -34,14 +35,14 @@ struct PointOfLobe {
         for (int k = 0; k < 3; ++k) wi[k] *= scale;
     }
 
-    /// The lobe's value and pdf in directions above the surface, in its frame, at most `Most`: calls report(i,
-    /// value, pdf) for each. `many`: about those, as is worth while for more than a few.
-    template <std::size_t Most, class Report>
-    ACDF_METHOD void look(int count, bool many, const float (*wi)[3], const Report& report) const noexcept {
-        float pdf[Most];
-        if (many) lobe_pdfs_about(lobe, lobe_at, wi, static_cast<std::size_t>(count), pdf, 0);
-        else lobe_pdfs(lobe, lobe_at, wi, static_cast<std::size_t>(count), pdf, 0);
-        for (int i = 0; i < count; ++i) report(i, bounded(lobe.value(lobe_at, wi[i], pdf[i])), bounded(pdf[i]));
+    /// The lobe's value and pdf in directions above the surface, in its frame: calls report(i, value, pdf) for
+    /// each.
+    template <class Report>
+    ACDF_METHOD void look(int count, const float (*wi)[3], const Report& report) const noexcept {
+        for (int i = 0; i < count; ++i) {
+            const float pdf = lobe.pdf(lobe_at, wi[i]);
+            report(i, bounded(lobe.value(lobe_at, wi[i], pdf)), bounded(pdf));
+        }
     }
 
     /// Adds samples of the lobe's own sampler, without weights, to none; their directions into `world`. In their

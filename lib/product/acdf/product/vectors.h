@@ -2,7 +2,6 @@
 #ifndef ACDF_PRODUCT_VECTORS_H
 #define ACDF_PRODUCT_VECTORS_H
 
-#include <acdf/brdf.h>
 #include <acdf/product/cut.h>
 #include <acdf/product/fast_cut.h>
 
@@ -21,11 +20,6 @@ typedef struct AcdfProductVectors {
                             const double (*u)[2], size_t count, AcdfDirectionSample* out);
     void (*fast_cut_pdf)(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
                          const float (*directions)[3], size_t count, float* out);
-    /* Samples of any BRDF file. */
-    void (*brdf_sample)(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double (*u)[2], size_t count,
-                        AcdfDirectionSample* out);
-    void (*brdf_pdf)(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], size_t count,
-                     float* out);
 } AcdfProductVectors;
 
 /* The functions that the linked library acdf-product has for this processor; null: none. */

@@ -261,7 +261,7 @@ TEST(BuilderBrdf, Misuse) {
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.diffuse_share = NAN; }));
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.max_weight = 0.5; }));
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.max_weight = kNan; }));
-    EXPECT_TRUE(refused([](BrdfOptions& o) { o.max_weight = 9.0, o.sharing = false; }));
+    EXPECT_TRUE(refused([](BrdfOptions& o) { o.max_weight = 9.0, o.fit = ACDF_FIT_CDF; }));
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.goal = Goal::of_variance(kNan); }));
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.fit = static_cast<AcdfFit>(5); }));
     options.goal = Goal::of_budget(300);

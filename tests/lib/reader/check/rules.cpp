@@ -67,7 +67,7 @@ TEST(Rules, theCompleteFilesBreakNone) {
     EXPECT_TRUE(load(spaced.encode()).ok());
 }
 
-// Where no tile has a tree, a BRDF has a TREE that nothing uses; else unit 0 is not a root of its own.
+// Unit 0 is not a root of its own.
 TEST(Rules, unitZeroIsARootWhereTheSpecificationSaysSo) {
     BrdfSpec spec = separate_brdf();
     spec.tree.curves.insert(spec.tree.curves.begin(), CurveSpec());
@@ -75,14 +75,9 @@ TEST(Rules, unitZeroIsARootWhereTheSpecificationSaysSo) {
         for (int& child : curve.children) child += child >= 0;
     for (BinSpec& bin : spec.bins) ++bin.root;
     EXPECT_EQ(findings(spec.encode()).rules, std::multiset<int>{6012}); // a warning
-    BrdfSpec tiles = shared_brdf();
-    EXPECT_TRUE(findings(tiles.encode()).rules.empty());
     CurveSpec curve = even_curve(0, {5}); // in columns [3, 8), from which its knot counts
     curve.position_bytes = 1;
     curve.origin = 3;
-    tiles.tree.curves = {curve};
-    tiles.tile_curves = {-1, -1, 0, -1};
-    EXPECT_TRUE(findings(tiles.encode()).rules.empty()) << findings(tiles.encode()).text;
     LocalSpec local = shared_local(); // where unit 0 is the whole environment's too
     local.tree.curves = {curve};
     local.tile_curves = {-1, 0, -1};

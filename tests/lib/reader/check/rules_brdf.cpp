@@ -48,11 +48,26 @@ std::vector<Case> brdf_cases() {
         {8001, "name", field(0, axis(1), 1, 'C')},
         {8001, "range_of_views", field(0, axis(2) + 32, 8, 0x3FE0000000000000)},
         {8001, "role", field(0, axis(3) + 16, 4, 0)},
-        {8001, "measure", field(0, axis(1) + 20, 4, 1)},
+        {8001, "measure", field(0, axis(1) + 20, 4, 0)},
+        {8001, "measure_of_curves",
+         [] {
+             FileSpec file = separate_brdf().file();
+             set(file.chunks[0].raw, axis(1) + 20, 4, 2);
+             return file.encode();
+         }},
         {8001, "range", field(0, axis(1) + 40, 8, 0x3FE0000000000000)},
         {8001, "columns", field(0, axis(0) + 24, 4, 65537)},
-        {8001, "rows", field(0, axis(1) + 24, 4, (1u << 28) + 1)},
-        {8002, "fewer", changed([](BrdfSpec& s) { s.bins.pop_back(); })},
+        {8001, "rows", field(0, axis(1) + 24, 4, 1024)},
+        {8001, "rows_of_curves",
+         [] {
+             FileSpec file = separate_brdf().file();
+             set(file.chunks[0].raw, axis(1) + 24, 4, (1u << 28) + 1);
+             return file.encode();
+         }},
+        {8002, "fewer", changed([](BrdfSpec& s) {
+             s.bins.pop_back();
+             s.halved.rows.pop_back();
+         })},
         {8002, "more", changed([](BrdfSpec& s) {
              s.bins.push_back({0, 0.125f});
          })},
@@ -99,6 +114,19 @@ std::vector<Case> brdf_cases() {
         {8005, "negative", changed([](BrdfSpec& s) { s.diffuse_share = -0.25f; })},
         {8005, "nan", changed([nan](BrdfSpec& s) { s.diffuse_share = nan; })},
         {8006, "row", changed([](BrdfSpec& s) { s.bins[1].root = no_root; })},
+        {3004, "rows_of_a_brdf",
+         [] {
+             FileSpec file = shared_brdf().file();
+             file.chunks.pop_back();
+             return file.encode();
+         }},
+        {6026, "row_of_a_brdf", changed([](BrdfSpec& s) { s.bins[1].root = 3; })},
+        {6040, "codes_of_a_brdf",
+         [] {
+             FileSpec file = shared_brdf().file();
+             file.chunks[4].raw.resize(file.chunks[4].raw.size() - 4);
+             return file.encode();
+         }},
         {8006, "tree",
          [] {
              BrdfSpec spec = separate_brdf();

@@ -104,7 +104,7 @@ std::vector<Case> description_cases() {
         {5011, "cut_utf8", third_axis(3, 1, 0xC3)},
         {5011, "taken", third_axis(0, 4, 'p' | 'h' << 8 | 'i' << 16)},
         {5012, "two", third_axis(16, 4, 2)},
-        {5013, "two", third_axis(20, 4, 2)},
+        {5013, "three", third_axis(20, 4, 3)},
         {5014, "zero", third_axis(24, 4, 0)},
         {5014, "too_large", third_axis(24, 4, 0x80000000)},
         {5015, "equal", third_axis(32, 8, 0x3FF0000000000000)},

@@ -92,11 +92,10 @@ std::vector<Case> halvings_cases() {
              table.chunks.push_back(halved().file().chunks[1]);
              return table.encode();
          }},
-        {3013, "halvings_of_a_brdf",
+        {6035, "halvings_beside_curves_of_a_brdf",
          [] {
-             EnvironmentSpec spec = halved();
              FileSpec brdf = shared_brdf().file();
-             brdf.chunks.push_back(spec.file().chunks[1]);
+             brdf.chunks.push_back(separate_brdf().file().chunks[2]);
              return brdf.encode();
          }},
         {6030, "empty", halv_payload([](Bytes& raw) { raw.clear(); })},
