@@ -141,9 +141,7 @@ private:
 u32 position_scale(u32 resolution, u32 bits) { return static_cast<u32>((u64{1} << (32 + bits)) / resolution); }
 
 // Whether rows begin elsewhere than at equal steps.
-bool has_heights(const HalvedSource& source) {
-    return source.parameterization == ACDF_PARAM_LATLONG || source.parameterization == ACDF_PARAM_HALF_ANGLE;
-}
+bool has_heights(const HalvedSource& source) { return source.parameterization != ACDF_PARAM_OCTAHEDRAL; }
 
 // A square for one to four cells.
 u32 lookup_bits(const HalvedSource& source) {
@@ -178,12 +176,13 @@ Layout layout_of(const HalvedSource& source, u32 bits, u32 starts) {
 
 void make_heights(AcdfHalvedTree* tree, const HalvedSource& source) {
     double* heights = at_word<double>(tree, tree->heights);
-    for (u32 row = 0; row <= source.resolution[1]; ++row)
 #ifndef ACDF_ENVIRONMENT_ONLY
-        if (source.parameterization == ACDF_PARAM_HALF_ANGLE) heights[row] = acdf_half_row(row);
-        else
+    if (source.parameterization == ACDF_PARAM_HALF_ANGLE) {
+        for (u32 row = 0; row <= source.resolution[1]; ++row) heights[row] = acdf_half_row(row);
+        return;
+    }
 #endif
-            heights[row] = acdf_row_z(row, source.resolution[1]);
+    for (u32 row = 0; row <= source.resolution[1]; ++row) heights[row] = acdf_row_z(row, source.resolution[1]);
 }
 
 } // namespace

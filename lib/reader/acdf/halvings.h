@@ -52,8 +52,7 @@ typedef struct AcdfHalvedTree {
     uint32_t positions;         /* uint16: by positions */
     uint32_t starts;            /* AcdfStart */
     uint32_t position_scale[2]; /* step * scale / 2^32 is the square of a grid step */
-    uint32_t heights;           /* double[rows + 1]: acdf_row_z of lat-long grids, acdf_half_row of half-vectors;
-                            0: there are none */
+    uint32_t heights;           /* double[rows + 1]: acdf_row_z, or acdf_half_row of BRDFs; 0: there are none */
 } AcdfHalvedTree;
 
 /* The array that begins at a word of a tree, and its nodes. */

@@ -1,6 +1,8 @@
 // What a BRDF asks of axes and bins, and its chunk VIEW.
 #include "check/kinds.h"
 
+#include <acdf/brdf_half.h>
+
 #include <cmath>
 #include <cstring>
 

@@ -115,16 +115,19 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
 // ---- chunk table ----------------------------------------------------------------------------------------
 
 constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_TREE};
-constexpr u32 required_beside_halvings = 1; // the first of them
+constexpr u32 required_beside_halvings = 1, required_count = 3; // the first of them; all
 constexpr u32 required_of_maps[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_HALVINGS, ACDF_CHUNK_MAPS};
 constexpr u32 required_of_normals[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_NORMALS};
+
+// Whether bins of a kind have rows of codes at the top of a tree of halvings.
+bool has_rows(u32 kind) { return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF; }
 
 // Whether a known chunk may be in files of a kind.
 bool belongs(int known, u32 kind) {
     if (known == chunk_local || known == chunk_visibility || known == chunk_portals || known == chunk_sums ||
         known == chunk_grid || known == chunk_tiles || known == chunk_rows)
         return kind == ACDF_KIND_LOCAL;
-    if (known == chunk_normals) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
+    if (known == chunk_normals) return has_rows(kind);
     if (known == chunk_views) return kind == ACDF_KIND_BRDF;
     if (known == chunk_partner) return kind != ACDF_KIND_BRDF && kind != ACDF_KIND_INDEXED;
     if (known == chunk_halvings) return kind != ACDF_KIND_TABLE;
@@ -216,16 +219,12 @@ bool has_chunk(const ChunkTable& table, u32 type) {
     return false;
 }
 
-// Whether bins of a kind have rows of codes at the top of a tree of halvings.
-bool has_rows(u32 kind) { return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF; }
-
 void check_required(const ChunkTable& table, u32 kind, Report& report) {
     const bool halved = has_chunk(table, ACDF_CHUNK_HALVINGS);
     const u32* types = kind == ACDF_KIND_INDEXED  ? required_of_maps
                        : halved && has_rows(kind) ? required_of_normals
                                                   : required_types;
-    u32 count = sizeof required_types / sizeof *required_types;
-    if (halved && types == required_types) count = required_beside_halvings;
+    const u32 count = halved && types == required_types ? required_beside_halvings : required_count;
     for (u32 i = 0; i < count; ++i)
         if (!has_chunk(table, types[i]))
             report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(types[i]).text);

@@ -4,6 +4,8 @@
 #include "memory.h"
 #include "tables/top_lookup.h"
 
+#include <cstring>
+
 namespace acdf {
 
 namespace {
@@ -172,6 +174,7 @@ private:
         u32 *const ends = array<u32>(rows_->ends) + u64{row} * rows_->group_stride, split = 0;
         ends[0] = 0;
         ends[rows_->groups] = ACDF_STEPS;
+        std::memset(codes, 0, rows_->stride); // vectors may read on
         if (rows_->splits == 0) return;
         codes_.row(bits_, [&](u32 before, u32 lower, u32 code) {
             const AcdfRowSplit& at = splits_[split];

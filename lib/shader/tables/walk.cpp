@@ -85,12 +85,9 @@ private:
     u32 curve(const Divided& divided, const AcdfCurve& curve, u32 first, u32 last);
     u32 splits(u32 node, const Cell& box);
     u32 leaf(const Cell& cell, u32 light);
-    struct CodedRows {
-        const std::uint8_t* bytes = nullptr;
-        std::size_t stride = 0, count = 0;
-    };
-    CodedRows coded_rows() const;
-    double share_of(u32 code) const;
+    std::size_t splits_of_rows() const;
+    std::size_t rows_of_splits() const;
+    void shares(u32 row, float* out) const;
     float unit() const;
     bool bins();
     bool views();
@@ -326,28 +323,53 @@ bool WalkMaker::make() {
     return file_.kind() == ACDF_KIND_ENVIRONMENT || bins();
 }
 
-// Codes of rows, a byte a split.
-WalkMaker::CodedRows WalkMaker::coded_rows() const {
-    const AcdfTiles* const tiles = local_.blend.tiles;
-    if (rows_) return {ACDF_TOP_ARRAY(std::uint8_t, rows_, rows_->codes), rows_->stride, rows_->rows};
-    if (!tiles || local_.fast.grid) return {};
-    return {local_.blend.rows, tiles->tile_count - std::size_t{1}, tiles->row_count};
+std::size_t WalkMaker::splits_of_rows() const {
+    if (rows_) return rows_->splits;
+    return local_.blend.tiles && !local_.fast.grid ? local_.blend.tiles->tile_count - std::size_t{1} : 0;
 }
 
-// What a code gives to the lower half of a split.
-double WalkMaker::share_of(u32 code) const {
-    if (!rows_) return local_.blend.tiles->codebook[code] / 65535.0;
-    return code <= rows_->last ? ACDF_TOP_ARRAY(u32, rows_, rows_->shares)[code] * 0x1p-31 : 0.0;
+std::size_t WalkMaker::rows_of_splits() const {
+    if (rows_) return rows_->rows;
+    return local_.blend.tiles && !local_.fast.grid ? local_.blend.tiles->row_count : 0;
+}
+
+// What a row gives to the halves of each split, in preorder: the smaller share, negative where it is the upper
+// half's.
+void WalkMaker::shares(u32 row, float* out) const {
+    const std::size_t splits = splits_of_rows();
+    const auto put = [](double lower, double upper) {
+        return lower <= upper ? static_cast<float>(lower) : -static_cast<float>(upper);
+    };
+    if (!rows_) {
+        const std::uint8_t* codes = local_.blend.rows + row * splits;
+        for (std::size_t i = 0; i < splits; ++i) {
+            const std::uint16_t lower = local_.blend.tiles->codebook[codes[i]];
+            out[i] = put(lower / 65535.0, (65535.0 - lower) / 65535.0);
+        }
+        return;
+    }
+    const std::uint8_t* codes =
+        ACDF_TOP_ARRAY(std::uint8_t, rows_, rows_->codes) + std::size_t{row} * rows_->stride;
+    const u32* share = ACDF_TOP_ARRAY(u32, rows_, rows_->shares);
+    u32 open[128], waiting = 0; // random numbers of the halves that wait: a level of each axis, and one
+    open[waiting++] = ACDF_STEPS;
+    for (std::size_t i = 0; i < splits; ++i) {
+        const u32 steps = open[--waiting], lower = acdf_row_lower(share, rows_->last, codes[i], steps);
+        out[i] = steps ? put(lower / double(steps), (steps - lower) / double(steps)) : 0.0f;
+        const AcdfRowSplit& split = acdf_row_splits(rows_)[i];
+        for (u32 upper = 2; upper-- > 0;)
+            if (!(acdf_row_half(rows_, &split, upper) & ACDF_TOP_TILE))
+                open[waiting++] = upper ? steps - lower : lower;
+    }
 }
 
 bool WalkMaker::assemble(AcdfBlock& block) const {
-    const CodedRows coded = coded_rows();
-    const std::size_t rows = coded.stride * coded.count;
-    const std::size_t codes = coded.bytes ? 512 : 0, bright_tiles = 8 * std::size_t{local_.bright_tile_count};
+    const std::size_t stride = splits_of_rows(), shares = stride * rows_of_splits(),
+                      bright_tiles = 8 * std::size_t{local_.bright_tile_count};
     const std::size_t words = ACDF_WALK_HEADER_WORDS +
                               (parts_.nodes.bytes() + parts_.leaves.bytes() + bins_.bytes() + views_.bytes()) / 4 +
-                              codes + bright_tiles + rows / 4 + 1 + tiles_.words() + maps_.words();
-    if (rows > 0xFFFFFFFFu || words > 0x3FFFFFFFu) return false;
+                              bright_tiles + shares + tiles_.words() + maps_.words();
+    if (words > 0x3FFFFFFFu) return false;
     block = take_block({}, 4 * words);
     if (!block.data) return false;
     u32* const out = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
@@ -368,7 +390,7 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     out[ACDF_WALK_COLUMNS] = local_.columns;
     out[ACDF_WALK_ROWS] = local_.rows;
     out[ACDF_WALK_BIN_COUNT] = brdf() ? 0 : static_cast<u32>(bins_.size() / 2);
-    out[ACDF_WALK_STRIDE] = static_cast<u32>(coded.stride);
+    out[ACDF_WALK_STRIDE] = static_cast<u32>(stride);
     out[ACDF_WALK_BRIGHT_TILE_COUNT] = local_.bright_tile_count;
     out[ACDF_WALK_COSINE] = float_bits(local_.cosine_share);
     out[ACDF_WALK_FAST] = local_.fast.grid != nullptr;
@@ -382,12 +404,6 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     place(ACDF_WALK_NODES, parts_.nodes.data(), parts_.nodes.bytes());
     place(ACDF_WALK_LEAVES, parts_.leaves.data(), parts_.leaves.bytes());
     place(ACDF_WALK_BINS, bins_.data(), bins_.bytes());
-    if (codes > 0) out[ACDF_WALK_CODES] = static_cast<u32>(at);
-    for (std::size_t i = 0; i < codes / 2; ++i) {
-        const double lower = share_of(static_cast<u32>(i));
-        out[at++] = float_bits(lower);
-        out[at++] = float_bits(1.0 - lower);
-    }
     if (bright_tiles > 0) out[ACDF_WALK_BRIGHT_TILES] = static_cast<u32>(at);
     for (u32 i = 0; i < local_.bright_tile_count; ++i) {
         const AcdfBrightTile& light = local_.bright_tiles[i];
@@ -397,7 +413,9 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
         out[at + 5] = light_links_[i];
         at += 8;
     }
-    place(ACDF_WALK_CODE_ROWS, coded.bytes, rows);
+    if (shares > 0) out[ACDF_WALK_SHARES] = static_cast<u32>(at);
+    for (u32 row = 0; shares > 0 && row < rows_of_splits(); ++row, at += stride)
+        this->shares(row, reinterpret_cast<float*>(out + at));
     if (local_.fast.grid) tiles_.place(local_, out, at);
     if (indexed_.top) maps_.place(out, at);
     return true;

@@ -34,10 +34,10 @@ public:
     }
     acdf::DirectionSample read(double u0, double u1) const { return file_.file.brdf().sample(wo_, u0, u1); }
     float read_pdf(const float d[3]) const { return file_.file.brdf().pdf(wo_, d); }
-    /// How much pdfs differ that are the same: by rounding, and as the reader counts whole steps of rows.
-    double rounds(const float d[3]) const { return Halves(wo_, d).rounded() + counted(d); }
+    /// How much pdfs differ that are the same.
+    double rounds(const float d[3]) const { return Halves(wo_, d).rounded() + weighed(); }
     bool has_rows() const { return file_.file.brdf().data().halved; }
-    double moves(const float d[3]) const { return Halves(wo_, d).moved() + counted(d); }
+    double moves(const float d[3]) const { return Halves(wo_, d).moved() + weighed(); }
 
     /// Whether the reader has this pdf for directions that floats hardly distinguish from these, or less and more
     /// of it, a hundredth apart: next to the azimuth of a view the share of the other view is known to few digits.
@@ -51,7 +51,7 @@ public:
                 wi[axis] = d[axis] + (k < 27 ? step : 0.0f);
             }
             const float told = file_.file.brdf().pdf(wo, wi);
-            if (nearly(pdf, told, 1e-4 + Halves(wo, wi).moved() + counted(d))) return true;
+            if (nearly(pdf, told, 1e-4 + Halves(wo, wi).moved() + weighed())) return true;
             less |= told < pdf && told > 0.995f * pdf;
             more |= told > pdf && told < 1.005f * pdf;
         }
@@ -59,23 +59,12 @@ public:
     }
 
 private:
-    /// The reader counts steps of rows, out of 2^31, and weights of rows, out of 2^21, in whole numbers: each split
-    /// is off by up to a step.
-    double counted(const float d[3]) const {
-        const AcdfBrdf& brdf = file_.file.brdf().data();
+    /// The reader rounds weights of rows to whole numbers, out of 2^21.
+    double weighed() const {
         AcdfBrdfView view;
-        AcdfBrdfPosition place;
-        double side, most = 0.0;
-        if (!brdf.halved || !acdf_brdf_view(&brdf, wo_, &view) || view.mix.count == 0) return 0.0;
-        if (!acdf_brdf_half_position(&brdf, &view, d, &place, &side)) return 0.0;
-        const std::uint32_t square[2] = {acdf_brdf_step(place.position[0], brdf.columns),
-                                         acdf_half_row_of(acdf_halved_heights(brdf.halved), place.position[1])};
-        const std::uint32_t group = acdf_rows_find_group(brdf.rows_of_views, square);
-        AcdfRowSteps steps = acdf_rows_of_group(brdf.rows_of_views, &view.mix, group);
-        acdf_rows_find_below(brdf.rows_of_views, &view.mix, acdf_row_group(brdf.rows_of_views, group), &steps,
-                             square);
-        for (int k = 0; k < view.mix.count; ++k)
-            if (steps.of[k] > 0) most = std::max({most, 32.0 / steps.of[k], 1.0 / view.mix.weight[k]});
+        double most = 0.0;
+        if (!acdf_brdf_view(&file_.file.brdf().data(), wo_, &view)) return 0.0;
+        for (int k = 0; k < view.mix.count; ++k) most = std::max(most, 1.0 / view.mix.weight[k]);
         return most;
     }
 

@@ -6,9 +6,8 @@
  * of its direction's own position in the cell, as the reader's has.
  *
  * Pdfs are the reader's but for the rounding of floats: below 1e-5 of them, and 1e-6 of them over the cosine of the
- * half-vector to wo. Rounding of the two directions changes more. Of rows of halvings the reader counts weights and
- * random numbers in whole numbers: pdfs differ by 2^-21 over the weight of a view, and 2^-26 over what its row
- * gives to the tile. Samples of such rows follow the same pdf, but other random numbers lead to a cell. */
+ * half-vector to wo. Rounding of the two directions changes more. The reader rounds weights of rows to whole
+ * numbers, out of 2^21. Samples follow the same pdf, but other random numbers lead to a cell than in the reader. */
 #ifndef ACDF_SHADER_BRDF_H
 #define ACDF_SHADER_BRDF_H
 

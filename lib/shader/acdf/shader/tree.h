@@ -30,9 +30,9 @@ extern "C" {
 #define ACDF_WALK_ROWS 8u
 #define ACDF_WALK_BINS 9u       /* 2 words each: row (link, where bins have trees) and share, f32 */
 #define ACDF_WALK_BIN_COUNT 10u /* 0: the file stores no normals */
-#define ACDF_WALK_CODES                                                                                            \
-    11u /* f32, 256 pairs: what parts a code gives to the lower and to the upper half of a split */
-#define ACDF_WALK_CODE_ROWS 12u /* bytes, a code a split: `stride` of them a row */
+/* f32, `stride` of them a row: the smaller of the parts that a split gives to its halves; negative: to the upper.
+ */
+#define ACDF_WALK_SHARES 12u
 #define ACDF_WALK_STRIDE 13u
 #define ACDF_WALK_BRIGHT_TILES                                                                                     \
     14u /* 8 words each: direction (3), radius, share (f32), link, and two of no meaning */
@@ -117,10 +117,11 @@ ACDF_FN3(AcdfWalkMixture, acdf_mixture_with, AcdfWalkMixture, given, ACDF_U32, r
 
 /* What a row gives to the lower part of a split (0) or to the upper one (1). */
 ACDF_FN4(ACDF_F32, acdf_walk_share, ACDF_TABLES, tables, ACDF_U32, row, ACDF_U32, split, ACDF_U32, side) {
-    ACDF_LET(ACDF_U32, byte) = row * ACDF_WORD(tables, ACDF_WALK_STRIDE) + split;
-    ACDF_LET(ACDF_U32, four) = ACDF_WORD(tables, ACDF_WORD(tables, ACDF_WALK_CODE_ROWS) + (byte >> 2u));
-    ACDF_LET(ACDF_U32, code) = (four >> ((byte & 3u) << 3u)) & 0xFFu;
-    return acdf_word_as_float(tables, ACDF_WORD(tables, ACDF_WALK_CODES) + 2u * code + side);
+    ACDF_LET(ACDF_U32, at) =
+        ACDF_WORD(tables, ACDF_WALK_SHARES) + row * ACDF_WORD(tables, ACDF_WALK_STRIDE) + split;
+    ACDF_LET(ACDF_U32, word) = ACDF_WORD(tables, at);
+    ACDF_LET(ACDF_F32, smaller) = ACDF_FLOAT(word & 0x7FFFFFFFu);
+    return ACDF_SELECT((word >> 31u) == side, smaller, 1.0f - smaller);
 }
 
 /* What of a mixture falls into a part of a split. */
