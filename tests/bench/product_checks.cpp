@@ -142,7 +142,7 @@ double summed(const Squares& squares, const AnyLobe& lobe, const typename AnyLob
         return mean;
     };
     const auto add_block = [&] {
-        lobe_pdfs(lobe, point, wi, count, pdf, 0);
+        for (std::size_t i = 0; i < count; ++i) pdf[i] = lobe.pdf(point, wi[i]);
         for (std::size_t i = 0; i < count; ++i) {
             const bool coarse = wi[i][2] > horizon && pdf[i] < narrow && square[i]->light < much;
             sum += double{square[i]->light} * (coarse ? double{pdf[i]} : finer(*square[i]));

@@ -129,19 +129,8 @@ private:
         }
     }
 
-    void spread_rows(const AcdfRowMixture& mix, std::vector<double>& out) const {
-        const AcdfNormalRows* const rows = local_.rows_of_normals;
-        const auto below = [&](const auto& self, std::uint32_t node, AcdfRowSteps steps) -> void {
-            if (node & ACDF_TOP_TILE) {
-                out[node & ~ACDF_TOP_TILE] = acdf_rows_mass(&mix, &steps) * 0x1p-52;
-                return;
-            }
-            const AcdfRowSplit& split = acdf_row_splits(rows)[node];
-            self(self, acdf_row_half(rows, &split, 0), acdf_rows_divide(rows, &mix, node, &steps));
-            self(self, acdf_row_half(rows, &split, 1), steps);
-        };
-        for (std::uint32_t group = 0; group < rows->groups; ++group)
-            below(below, acdf_row_group(rows, group), acdf_rows_of_group(rows, &mix, group));
+    static void spread_rows(const AcdfRowMixture& mix, std::vector<double>& out) {
+        for (std::uint32_t t = 0; t < out.size(); ++t) out[t] = acdf_rows_mass(&mix, t, t + 1) * 0x1p-52;
     }
 
     std::vector<double> tile_probabilities(const AcdfLocalPoint& source) const {

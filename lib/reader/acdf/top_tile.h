@@ -33,7 +33,7 @@ ACDF_FN void acdf_whole_weights(double* weight, uint32_t count) {
         if (weight[i] > weight[most]) most = i;
     }
     for (i = 0; i < count; ++i) {
-        const double whole = floor(weight[i] / sum * ACDF_WEIGHTS + 0.5);
+        const double whole = (double)(int32_t)(weight[i] / sum * ACDF_WEIGHTS + 0.5);
         weight[i] = whole < 1.0 ? 1.0 : whole;
         left -= weight[i];
     }

@@ -30,7 +30,7 @@ void check_normal_codes(const Payload& payload, u64 begin, const AcdfNormalsHead
     RowCodes codes(parts.halvings, payload.data + sizeof normals, normals.code_bits);
     Bits bits(payload, begin, payload.size);
     for (u32 row = 0; normals.split_count > 0 && row < normals.row_count; ++row)
-        if (!codes.row(bits, [](u32, u32, u32) {}))
+        if (!codes.row(bits, [](u32, u32) {}))
             return report.add(6040, bits.place(), "row %u: %s", row, codes.wrong);
     if (bits.has(32)) return report.add(6039, bits.place(), "bytes are left");
     while (bits.has(1))

@@ -14,8 +14,8 @@ public:
             share_[code] = acdf_halving_share(code, code_bits);
     }
 
-    /// Takes the codes of a row from `bits`. Calls visit(before, lower, code) for each split: the steps of all
-    /// tiles before it, and of its lower half; the code is 0 where it has none. False where codes are missing or
+    /// Takes the codes of a row from `bits`. Calls visit(before, lower) for each split: the steps of all tiles
+    /// before it, and of its lower half. False where codes are missing or
     /// wrong: `wrong` says which.
     template <class Visit>
     bool row(Bits& bits, const Visit& visit) {
@@ -23,9 +23,9 @@ public:
         if (has_codes(0)) open_[waiting++] = {0, 0, ACDF_STEPS};
         while (waiting > 0) {
             const Open at = open_[--waiting];
-            std::uint32_t lower = 0, code = 0;
-            if (at.steps > 0 && !take(bits, at.steps, code, lower)) return false;
-            visit(at.before, lower, code);
+            std::uint32_t lower = 0;
+            if (at.steps > 0 && !take(bits, at.steps, lower)) return false;
+            visit(at.before, lower);
             const std::uint32_t link = nodes_[at.node].link;
             const std::uint32_t half[2] = {at.node + 1, at.node + (link >> 5)};
             if (!(link >> 4 & 1u) && has_codes(half[1]))
@@ -43,13 +43,13 @@ private:
         std::uint32_t node, before, steps;
     };
 
-    bool take(Bits& bits, std::uint32_t steps, std::uint32_t& code, std::uint32_t& lower) {
+    bool take(Bits& bits, std::uint32_t steps, std::uint32_t& lower) {
         if (!bits.has(code_bits_)) {
             wrong = "codes are missing";
             return false;
         }
         const std::uint32_t last = (1u << code_bits_) - 1;
-        code = bits.take(code_bits_);
+        const std::uint32_t code = bits.take(code_bits_);
         if (code != 0 && code != last && steps < 2) {
             wrong = "one step is divided";
             return false;

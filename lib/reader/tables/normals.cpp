@@ -4,8 +4,6 @@
 #include "memory.h"
 #include "tables/top_lookup.h"
 
-#include <cstring>
-
 namespace acdf {
 
 namespace {
@@ -107,17 +105,13 @@ public:
     void run() {
         make_splits();
         for (u32 r = 0; r < rows_->rows; ++r) make_row(r);
-        u32* const shares = array<u32>(rows_->shares);
-        for (u32 code = 0; code <= rows_->last; ++code)
-            shares[code] = acdf_halving_share(code, parts_.normals->code_bits);
-        if (rows_->groups > 1)
-            fill_top_starts(
-                rows_->bits, rows_->position_scale, array<u32>(rows_->starts),
-                [&](u32 at, u32& axis, u32& middle) {
-                    axis = splits_[at].place & 1u;
-                    middle = splits_[at].place >> 2;
-                },
-                [&](u32 at, bool upper) { return splits_[at].child[upper]; });
+        fill_top_starts(
+            rows_->bits, rows_->position_scale, array<u32>(rows_->starts),
+            [&](u32 at, u32& axis, u32& middle) {
+                axis = splits_[at].place & 1u;
+                middle = splits_[at].place >> 1;
+            },
+            [&](u32 at, bool upper) { return splits_[at].child[upper]; });
     }
 
 private:
@@ -139,24 +133,18 @@ private:
     // Splits, tiles and groups are numbered in preorder.
     void make_splits() {
         u32 splits = 0, tiles = 0, groups = 0;
-        bool begins = false; // a group: its parent leads to that
-        TopWalk walk(parts_, codes_);
-        walk.run(
-            [&](const Open& at) {
-                array<u32>(rows_->group)[groups] = walk.is_split(at.node) ? splits : ACDF_TOP_TILE | tiles;
-                link(at, ACDF_TOP_TILE | groups++, tiles);
-                begins = true;
-            },
-            [&](const Open& at, u32 axis, u32 middle) {
-                if (!begins) link(at, splits, tiles);
-                splits_[splits++].place = axis | (at.grouped ? 0u : 2u) | middle << 2;
-                begins = false;
-            },
-            [&](const Open& at) {
-                if (!begins) link(at, ACDF_TOP_TILE | tiles, tiles);
-                put_tile(at, tiles++);
-                begins = false;
-            });
+        u32* const first = array<u32>(rows_->first);
+        TopWalk(parts_, codes_)
+            .run([&](const Open&) { first[groups++] = tiles; },
+                 [&](const Open& at, u32 axis, u32 middle) {
+                     link(at, splits, tiles);
+                     splits_[splits++].place = axis | middle << 1;
+                 },
+                 [&](const Open& at) {
+                     link(at, ACDF_TOP_TILE | tiles, tiles);
+                     put_tile(at, tiles++);
+                 });
+        first[groups] = tiles;
     }
 
     void put_tile(const Open& at, u32 number) {
@@ -169,20 +157,17 @@ private:
                                                     {at.box[0], at.box[1]}};
     }
 
+    // Each tile but the first is the first one of the upper half of a split.
     void make_row(u32 row) {
-        auto* const codes = reinterpret_cast<std::uint8_t*>(array<u32>(rows_->codes)) + u64{row} * rows_->stride;
-        u32 *const ends = array<u32>(rows_->ends) + u64{row} * rows_->group_stride, split = 0;
-        ends[0] = 0;
-        ends[rows_->groups] = ACDF_STEPS;
-        std::memset(codes, 0, rows_->stride); // vectors may read on
-        if (rows_->splits == 0) return;
-        codes_.row(bits_, [&](u32 before, u32 lower, u32 code) {
-            const AcdfRowSplit& at = splits_[split];
-            for (u32 upper = 0; at.place & 2u && upper < 2; ++upper)
-                if (at.child[upper] & ACDF_TOP_TILE)
-                    ends[at.child[upper] & ~ACDF_TOP_TILE] = before + (upper ? lower : 0);
-            codes[split++] = static_cast<std::uint8_t>(code);
-        });
+        u32 *const before = array<u32>(rows_->before) + u64{row} * rows_->stride,
+                   *const ends = array<u32>(rows_->ends) + u64{row} * rows_->group_stride, split = 0;
+        const u32* const first = array<u32>(rows_->first);
+        before[0] = 0;
+        before[rows_->splits + 1] = ACDF_STEPS;
+        if (rows_->splits > 0)
+            codes_.row(bits_,
+                       [&](u32 steps_before, u32 lower) { before[splits_[split++].tile] = steps_before + lower; });
+        for (u32 group = 0; group <= rows_->groups; ++group) ends[group] = before[first[group]];
     }
 
     const Parts& parts_;
@@ -202,15 +187,14 @@ bool lay_out(const Parts& parts, AcdfNormalRows& out) {
         offset = static_cast<u32>(at);
         at = to_row_line(at + words);
     };
-    const u64 stride = to_row_line(words_for(8 * splits)), group_stride = to_row_line(out.groups + u64{1});
+    const u64 stride = to_row_line(splits + 2), group_stride = to_row_line(out.groups + u64{1});
     place(out.split, splits * (sizeof(AcdfRowSplit) / 4));
     place(out.tiles, (splits + 1) * (sizeof(AcdfTopTile) / 4));
-    place(out.shares, 256);
-    place(out.group, out.groups);
+    place(out.first, out.groups + u64{1});
     place(out.starts, out.bits ? u64{1} << 2 * out.bits : 0);
     place(out.ends, count * group_stride);
-    place(out.codes, count * stride);
-    out.stride = static_cast<u32>(4 * stride);
+    place(out.before, count * stride);
+    out.stride = static_cast<u32>(stride);
     out.group_stride = static_cast<u32>(group_stride);
     out.words = static_cast<u32>(at);
     for (u32 axis = 0; axis < 2; ++axis)
@@ -226,9 +210,8 @@ AcdfNormalRows* make_normal_rows(const Parts& parts, bool lookup, const double* 
     AcdfNormalRows out = {};
     out.rows = parts.normals->row_count;
     out.splits = parts.normals->split_count;
-    out.last = (1u << parts.normals->code_bits) - 1;
     TopWalk(parts, codes).run([&](const auto&) { ++out.groups; }, [](const auto&, u32, u32) {}, [](const auto&) {});
-    if (lookup && out.groups > 1) out.bits = top_lookup_bits(parts, out.groups);
+    if (lookup) out.bits = top_lookup_bits(parts, out.splits);
     if (!lay_out(parts, out)) return nullptr;
     block = take_block(allocator, 4 * std::size_t{out.words});
     if (!block.data) return nullptr;

@@ -193,10 +193,9 @@ u32 WalkMaker::top(u32 at) {
 u32 WalkMaker::row_split(u32 at) {
     if (at & ACDF_TOP_TILE) return tile(*acdf_row_tile(rows_, at & ~ACDF_TOP_TILE));
     const AcdfRowSplit& split = acdf_row_splits(rows_)[at];
-    const u32 made = node(split.place & 1u, split.place >> 2, ACDF_WALK_SPLIT | at);
+    const u32 made = node(split.place & 1u, split.place >> 1, ACDF_WALK_SPLIT | at);
     u32 links[2] = {};
-    for (u32 upper = 0; upper < 2 && !failed_; ++upper)
-        links[upper] = row_split(acdf_row_half(rows_, &split, upper));
+    for (u32 upper = 0; upper < 2 && !failed_; ++upper) links[upper] = row_split(split.child[upper]);
     if (failed_) return ACDF_WALK_LEAF;
     parts_.nodes[made].lower = links[0];
     parts_.nodes[made].upper = links[1];
@@ -348,18 +347,18 @@ void WalkMaker::shares(u32 row, float* out) const {
         }
         return;
     }
-    const std::uint8_t* codes =
-        ACDF_TOP_ARRAY(std::uint8_t, rows_, rows_->codes) + std::size_t{row} * rows_->stride;
-    const u32* share = ACDF_TOP_ARRAY(u32, rows_, rows_->shares);
-    u32 open[128], waiting = 0; // random numbers of the halves that wait: a level of each axis, and one
-    open[waiting++] = ACDF_STEPS;
+    const u32* before = acdf_row_before(rows_, row);
+    struct Tiles {
+        u32 first, end;
+    } open[128], at = {0, rows_->splits + 1}; // of the halves that wait: a level of each axis, and one
+    u32 waiting = 0;
     for (std::size_t i = 0; i < splits; ++i) {
-        const u32 steps = open[--waiting], lower = acdf_row_lower(share, rows_->last, codes[i], steps);
-        out[i] = steps ? put(lower / double(steps), (steps - lower) / double(steps)) : 0.0f;
         const AcdfRowSplit& split = acdf_row_splits(rows_)[i];
-        for (u32 upper = 2; upper-- > 0;)
-            if (!(acdf_row_half(rows_, &split, upper) & ACDF_TOP_TILE))
-                open[waiting++] = upper ? steps - lower : lower;
+        if (i > 0) at = open[--waiting];
+        const double steps = before[at.end] - before[at.first], lower = before[split.tile] - before[at.first];
+        out[i] = steps > 0.0 ? put(lower / steps, (steps - lower) / steps) : 0.0f;
+        if (!(split.child[1] & ACDF_TOP_TILE)) open[waiting++] = {split.tile, at.end};
+        if (!(split.child[0] & ACDF_TOP_TILE)) open[waiting++] = {at.first, split.tile};
     }
 }
 

@@ -73,22 +73,15 @@ ACDF_INLINE uint32_t acdf_cut_node(const AcdfCutPart* part) {
     return part->node & ACDF_TILE_FLAG ? ACDF_TOP_TILE | (part->node & ~ACDF_TILE_FLAG) : part->node;
 }
 
-/* The steps of rows of halvings that lead to a part: its weights are these. */
-ACDF_INLINE AcdfRowSteps acdf_cut_steps(const AcdfCutPart* part) {
-    AcdfRowSteps steps = {{0, 0, 0, 0}};
-    int k;
-    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) steps.of[k] = (uint32_t)part->weight[k];
-    return steps;
-}
-ACDF_INLINE void acdf_cut_set_steps(const AcdfRowMixture* mix, const AcdfRowSteps* steps, AcdfCutPart* part) {
-    int k;
-    for (k = 0; k < ACDF_NORMALS_MIXED; ++k) part->weight[k] = k < mix->count ? (double)steps->of[k] : 0.0;
-    part->sum = acdf_rows_mass(mix, steps) * 0x1p-52;
+/* The end of the tiles of a part: the one behind the last. */
+ACDF_INLINE uint32_t acdf_cut_end(const AcdfNormalRows* rows, const AcdfCutPart* part) {
+    uint32_t node = acdf_cut_node(part);
+    while (!(node & ACDF_TOP_TILE)) node = acdf_row_splits(rows)[node].child[1];
+    return (node & ~ACDF_TOP_TILE) + 1u;
 }
 
 /* acdf_cut_begin where rows of halvings serve a point. */
 ACDF_FN void acdf_cut_begin_rows(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut) {
-    const AcdfRowSteps all = {{ACDF_STEPS, ACDF_STEPS, ACDF_STEPS, ACDF_STEPS}};
     AcdfCutPart* whole = &cut->part[0];
     int k;
     memset(whole, 0, sizeof *whole);
@@ -100,7 +93,7 @@ ACDF_FN void acdf_cut_begin_rows(const AcdfLocal* local, const AcdfLocalPoint* p
     whole->node = local->rows_of_normals->splits ? 0 : ACDF_TILE_FLAG;
     whole->high[0] = local->environment.columns;
     whole->high[1] = local->environment.rows;
-    acdf_cut_set_steps(&point->by.rows, &all, whole);
+    whole->sum = 1.0;
     whole->probability = 1.0;
 }
 
@@ -261,15 +254,15 @@ ACDF_FN void acdf_cut_divide_rows(const AcdfLocal* local, const AcdfLocalPoint* 
     const AcdfNormalRows* rows = local->rows_of_normals;
     AcdfCutPart *part = &cut->part[number], *upper = &cut->part[cut->count];
     const AcdfRowSplit* split = &acdf_row_splits(rows)[part->node];
-    const uint32_t axis = split->place & 1u, position = split->place >> 2;
-    AcdfRowSteps steps = acdf_cut_steps(part), lower = acdf_rows_divide(rows, &point->by.rows, part->node, &steps);
+    const uint32_t axis = split->place & 1u, position = split->place >> 1;
+    const double lower = acdf_rows_mass(&point->by.rows, part->tile, split->tile) * 0x1p-52;
     *upper = *part;
     acdf_cut_add_split(cut, number, axis | position << 3);
-    acdf_cut_set_steps(&point->by.rows, &lower, part);
-    acdf_cut_set_steps(&point->by.rows, &steps, upper);
+    upper->sum -= lower; /* exactly: whole numbers, out of 2^52 */
+    part->sum = lower;
     part->high[axis] = upper->low[axis] = position;
-    part->node = acdf_cut_of_node(acdf_row_half(rows, split, 0));
-    upper->node = acdf_cut_of_node(acdf_row_half(rows, split, 1));
+    part->node = acdf_cut_of_node(split->child[0]);
+    upper->node = acdf_cut_of_node(split->child[1]);
     upper->tile = split->tile;
 }
 
@@ -316,11 +309,17 @@ ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* p
 ACDF_FN uint32_t acdf_cut_row_heart(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                     int number, float direction[3]) {
     const AcdfNormalRows* rows = local->rows_of_normals;
-    const uint32_t* shares = ACDF_TOP_ARRAY(uint32_t, rows, rows->shares);
-    const uint8_t* codes = point->by.rows.codes[cut->nearest];
-    uint32_t node = acdf_cut_node(&cut->part[number]), box[2][2], k;
-    while (!(node & ACDF_TOP_TILE))
-        node = acdf_row_half(rows, &acdf_row_splits(rows)[node], (uint32_t)(shares[codes[node]] < ACDF_STEPS / 2u));
+    const uint32_t* before = point->by.rows.before[cut->nearest];
+    const AcdfCutPart* part = &cut->part[number];
+    uint32_t first = part->tile, end = acdf_cut_end(rows, part);
+    uint32_t node = acdf_cut_node(part), box[2][2], k;
+    while (!(node & ACDF_TOP_TILE)) {
+        const AcdfRowSplit* split = &acdf_row_splits(rows)[node];
+        const uint32_t upper = (uint32_t)(before[split->tile] - before[first] < before[end] - before[split->tile]);
+        if (upper) first = split->tile;
+        else end = split->tile;
+        node = split->child[upper];
+    }
     node &= ~ACDF_TOP_TILE;
     for (k = 0; k < 2; ++k) {
         box[k][0] = acdf_row_tile(rows, node)->box[k].end[0];

@@ -290,36 +290,31 @@ ACDF_FN const AcdfCutPart* acdf_cut_find(const AcdfCut* cut, const uint32_t* squ
     return &cut->part[~child];
 }
 
-/* What a part gives to a tile of rows of halvings, whose steps are those, of all. */
-ACDF_INLINE double acdf_cut_row_probability(const AcdfLocalPoint* point, const AcdfCutPart* part,
-                                            const AcdfRowSteps* steps) {
-    const AcdfRowSteps all = acdf_cut_steps(part);
-    return part->probability * (acdf_rows_mass(&point->by.rows, steps) / acdf_rows_mass(&point->by.rows, &all));
-}
-
 /* acdf_cut_pdf where rows of halvings serve a point. */
 ACDF_FN float acdf_cut_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                const AcdfGrid* grid, const uint32_t square[2]) {
     const AcdfNormalRows* rows = local->rows_of_normals;
     const AcdfCutPart* part = acdf_cut_find(cut, square);
-    AcdfRowSteps steps;
     uint32_t tile;
     AcdfSpan box[2];
     if (!(part->probability > 0.0)) return 0.0f;
-    steps = acdf_cut_steps(part);
-    tile = acdf_rows_find_below(rows, &point->by.rows, acdf_cut_node(part), &steps, square);
-    return acdf_float_pdf(acdf_rows_find_inside(local->environment.halved, grid, acdf_row_tile(rows, tile),
-                                                acdf_cut_row_probability(point, part, &steps), square, box));
+    tile = acdf_rows_find_below(rows, acdf_cut_node(part), square);
+    return acdf_float_pdf(acdf_rows_find_inside(
+        local->environment.halved, grid, acdf_row_tile(rows, tile),
+        part->probability * (acdf_rows_mass(&point->by.rows, tile, tile + 1u) / (part->sum * 0x1p52)), square,
+        box));
 }
 
 /* acdf_cut_sample where rows of halvings serve a point: from a part, u in [0, 1]. */
 ACDF_FN AcdfDirectionSample acdf_cut_row_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                 const AcdfCutPart* part, const AcdfGrid* grid, double u[2]) {
     const AcdfNormalRows* rows = local->rows_of_normals;
-    AcdfRowSteps steps = acdf_cut_steps(part);
-    const uint32_t tile = acdf_rows_sample_below(rows, &point->by.rows, acdf_cut_node(part), &steps, &u[1]);
+    const AcdfRowMixture* mix = &point->by.rows;
+    double below = acdf_rows_sum(mix, mix->before, part->tile), mass = part->sum * 0x1p52;
+    const uint32_t tile =
+        acdf_rows_search(mix, mix->before, part->tile, acdf_cut_end(rows, part), &below, &mass, &u[1]);
     return acdf_rows_direction(local->environment.halved, grid, acdf_row_tile(rows, tile),
-                               acdf_cut_row_probability(point, part, &steps), u);
+                               part->probability * (mass / (part->sum * 0x1p52)), u);
 }
 
 /* Pdf per steradian with which acdf_cut_sample samples `direction` (unit); of cuts that are finished. */
