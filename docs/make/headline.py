@@ -73,7 +73,6 @@ def headline():
     brdfs = tables("performance-brdf.md", "", "ns a sample")
     single = [(float(row["ns a sample"]), float(rows[0]["ns a sample"])) for rows in brdfs for row in rows
               if row[""] in ("64 KiB", "128 KiB")]
-    batch = [float(row["ns a sample"]) for rows in brdfs for row in rows if "AVX-512" in row[""]]
     return f"""- **Small.** A 64 KiB file, {max(small.bytes, large.bytes) / 1e6:.2f} MB in memory with its tables, replaces a full-resolution CDF of {small.full_bytes / 1e6:.1f} MB. One sample
   of the map's light has a relative variance of {min(sizes):.2g} to {max(sizes):.2g} on
   [six probes](docs/appendix/accuracy-environment.md#sizes) with nearest lookup; that of the full CDF is 0.
@@ -85,7 +84,7 @@ def headline():
 - **Fast.** Sampling a 64 KiB file takes {span([small.ns, large.ns])} ns, {small.faster:.1f} times faster than a full-resolution CDF at 1024×512 and
   {large.faster:.1f} times at 4096×2048. File and tables made at load take {max(small.bytes, large.bytes) / 1e6:.2f} MB; the full CDF takes {small.full_bytes / 1e6:.1f} and {large.full_bytes / 1e6:.0f} MB
   ([times](docs/performance.md#environment-files)). A measured BRDF is sampled in {span([ns for ns, _ in single])} ns, {span([rgl / ns for ns, rgl in single], "{:.1f}")} times faster than by
-  its authors' sampler. Batches take {span(batch)} ns with AVX-512 ([times](docs/performance.md#brdfs))."""
+  its authors' sampler ([times](docs/performance.md#brdfs))."""
 
 
 def main():

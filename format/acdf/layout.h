@@ -203,7 +203,7 @@ typedef struct AcdfNormalsHeader {
     uint32_t reserved;    /* 0 */
 } AcdfNormalsHeader;
 #define ACDF_MOST_ROW_CODE_BITS 8u
-#define ACDF_MOST_NORMAL_RATIO 256u /* rows times splits, at most, over the bytes of NORM */
+#define ACDF_MOST_NORMAL_RATIO 64u /* rows times splits, at most, over the bytes of NORM */
 
 typedef struct AcdfMap {
     float share;     /* its integral over `total` */

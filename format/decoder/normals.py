@@ -28,7 +28,7 @@ class NormalRows:
         codes_at = 16 + 4 * words(tree.count)
         require(len(data) >= codes_at and reserved == 0, 6039)
         require(1 <= self.row_count <= bin_count and splits <= tree.count and 4 <= self.code_bits <= 8, 6039)
-        require(self.row_count * (splits + 2) <= 256 * len(data), 6039)
+        require(self.row_count * splits <= 64 * len(data), 6039)
         self.tiles = []
         self.read_splits(Bits(data[16:codes_at]), splits)
         self.count = len(self.tiles)

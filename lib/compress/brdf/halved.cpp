@@ -101,7 +101,9 @@ private:
         const double row_bits =
             about > 0 ? kCodeBits * double(grown.codes(about)) / double(about) : rows * kCodeBits;
         top = std::min(choose_top(grown.growth(), below_, 1.0, row_bits, space), grown.halvings());
-        while (top > 0 && row_bytes(top, grown.codes(top), kCodeBits) > bytes) --top;
+        while (top > 0 && (row_bytes(top, grown.codes(top), kCodeBits) > bytes ||
+                           !are_dense(targets_.size(), top, grown.codes(top), kCodeBits)))
+            --top;
         if (row_bytes(top, grown.codes(top), kCodeBits) > bytes)
             throw std::runtime_error("no tree fits into the budget");
         all = halvings_within(bytes, grown.codes(top), kCodeBits);

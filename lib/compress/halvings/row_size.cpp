@@ -61,6 +61,10 @@ std::size_t halvings_within(std::uint64_t bytes, std::size_t codes, std::uint32_
     return low;
 }
 
+bool are_dense(std::size_t rows, std::size_t top, std::size_t codes, std::uint32_t code_bits) {
+    return rows * top <= ACDF_MOST_NORMAL_RATIO * (sizeof(AcdfNormalsHeader) + codes * code_bits / 8);
+}
+
 double halvings_for(double bytes, double row_bits) {
     return std::min(bytes * 8.0 / (row_bits + kSharedBits - 8.0), double{ACDF_MOST_HALVINGS});
 }

@@ -16,6 +16,9 @@ constexpr double kSharedBits = 8 + 3;
 std::size_t row_bytes(std::size_t halvings, std::size_t codes, std::uint32_t code_bits);
 /// The most halvings with which these chunks take at most `bytes`.
 std::size_t halvings_within(std::uint64_t bytes, std::size_t codes, std::uint32_t code_bits);
+/// Whether rows of that many codes may stand in a file, `top` halvings having codes: a reader keeps a number for
+/// each row and tile.
+bool are_dense(std::size_t rows, std::size_t top, std::size_t codes, std::uint32_t code_bits);
 /// About how many halvings, with `row_bits` of codes each, take so many bytes: no more than fit into any file, so
 /// that counts can be integers.
 double halvings_for(double bytes, double row_bits);

@@ -14,11 +14,11 @@ using ull = unsigned long long;
 
 bool check_normal_counts(const Payload& payload, const AcdfNormalsHeader& normals, Report& report,
                          const Parts& parts) {
-    const bool right =
-        normals.row_count > 0 && normals.row_count <= parts.description->bin_count &&
-        normals.split_count <= parts.halving_count && normals.code_bits >= ACDF_LEAST_MAP_CODE_BITS &&
-        normals.code_bits <= ACDF_MOST_ROW_CODE_BITS && normals.reserved == 0 &&
-        u64{normals.row_count} * (normals.split_count + u64{2}) <= ACDF_MOST_NORMAL_RATIO * payload.size;
+    const bool right = normals.row_count > 0 && normals.row_count <= parts.description->bin_count &&
+                       normals.split_count <= parts.halving_count &&
+                       normals.code_bits >= ACDF_LEAST_MAP_CODE_BITS &&
+                       normals.code_bits <= ACDF_MOST_ROW_CODE_BITS && normals.reserved == 0 &&
+                       u64{normals.row_count} * normals.split_count <= ACDF_MOST_NORMAL_RATIO * payload.size;
     if (!right)
         report.add(6039, payload.at(0), "%u rows, %u splits, codes of %u bits", normals.row_count,
                    normals.split_count, normals.code_bits);

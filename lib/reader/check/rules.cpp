@@ -142,7 +142,7 @@ const Rule rules[] = {
     {6038, error, "maps-padding", "The padding of MAPS and of NORM is zero."},
     {6039, error, "normals",
      "NORM is as long as its codes need, with 1 to as many rows as bins, at most as many splits as halvings, "
-     "`row_count` (`split_count` + 2) at most 256 times its bytes, codes of 4 to 8 bits, and `reserved` is zero."},
+     "`row_count` times `split_count` at most 64 times its bytes, codes of 4 to 8 bits, and `reserved` is zero."},
     {6040, error, "normal-codes",
      "NORM has all codes of each row; where one lies between the first and the last, two steps or more are "
      "divided."},

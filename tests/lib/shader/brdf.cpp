@@ -179,7 +179,8 @@ TEST(ShaderBrdf, SamplesFollowTheirPdf) {
         spec.flags = flags;
         const WalkedFile file(spec.encode());
         ASSERT_TRUE(file.status.ok()) << file.status.message;
-        const AcdfBrdf& brdf = file.file.brdf().data();
+        const acdf::BrdfView reader = file.file.brdf();
+        const AcdfBrdf& brdf = reader.data();
         const float wo[3] = {0.48f, 0.36f, 0.8f};
         const BrdfPoint point(file, wo);
         AcdfBrdfView view;

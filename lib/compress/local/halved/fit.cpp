@@ -22,6 +22,7 @@ constexpr double kFilledSubdivisions = 8.0, kFilledAt = 131072.0, kFilledRises =
 // Beside a partner cells are worth little until they part what is brighter than a threshold from what is not: gains
 // do not foretell it, and a tile has at least so many cells.
 constexpr std::size_t kFewestCells = 4;
+constexpr std::size_t kFewestCodes = 4; // of those foreseen, one in so many
 constexpr double kFewestRows = 387.0, kFewestAt = 1048576.0, kFewestFalls = 0.6; // rows that a size has at least
 
 std::size_t codes_in(const LocalHalvings& fit) {
@@ -262,7 +263,9 @@ LocalHalvings LocalHalvingsFitter::fit(const NormalBins& bins, const LocalHalvin
         top = first_halvings(whole_top.nodes(), halvings);
         codes = codes_of(top, bins);
         const std::size_t least = partner ? std::min(kFewestCells * halvings, target_.values.size() - 1) : halvings;
-        if (row_bytes(std::max(least, halvings), codes, size.code_bits) <= size.bytes) break;
+        if (row_bytes(std::max(least, halvings), codes, size.code_bits) <= size.bytes &&
+            are_dense(bins.stored(), halvings, codes / kFewestCodes, size.code_bits))
+            break;
         if (halvings == 0) throw std::runtime_error("no tree fits into the budget");
     }
     const auto attempt = [&](std::size_t most_codes, double begin, double end) {
