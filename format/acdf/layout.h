@@ -296,9 +296,9 @@ typedef struct AcdfPartnerRecord {
 
 #ifndef ACDF_ENVIRONMENT_ONLY
 /* Chunk PLAC, of local environments: what of the light reaches a position (SPEC.md §12.1). This, then `split_count`
- * splits, then 1 + `further_sets` sets of columns, a uint16 for each split of TILE, its column in a row or
- * ACDF_NO_COLUMN, then, where there are further sets, a uint16 for each row, its set, then `row_count` rows of
- * 1 + bright tiles + `column_count` bytes: codes of visibility of the mixture and of each light, and of odds. */
+ * splits, then 1 + `further_sets` sets of `column_count` AcdfColumn, then, where there are further sets, a uint16
+ * for each row, its set, then `row_count` rows of 1 + `column_count` bytes: a code of visibility of all light, and
+ * a code of the odds of each column. */
 typedef struct AcdfVisibility {
     uint32_t split_count;
     uint32_t row_count;
@@ -318,7 +318,16 @@ typedef struct AcdfVisibilitySplit {
     uint32_t upper; /* a later split, or ACDF_VISIBILITY_ROW | a row */
 } AcdfVisibilitySplit;
 
-#define ACDF_NO_COLUMN 0xFFFFu
+/* Tiles that follow each other are parted at a column. Columns of a set stand in preorder: the lower part, if it is
+ * parted, follows at once. */
+typedef struct AcdfColumn {
+    uint16_t tile;  /* the first one of the upper part */
+    uint16_t parts; /* bits 0-14: the column of the upper part, 0: none; bit 15: the lower part has none */
+} AcdfColumn;
+
+#define ACDF_MAX_COLUMNS 0x8000u
+#define ACDF_MAX_COLUMNS_DEEP 64u /* on a path */
+#define ACDF_ODDS_BITS 8u         /* of a code of odds, one as HALV has them */
 #define ACDF_VISIBILITY_ROW 0x10000000u
 #define ACDF_MAX_VISIBILITY_DEPTH 64u /* on a path */
 

@@ -106,7 +106,7 @@ class Local:
         self.tree, self.tiles, self.bins = tree, tiles, d.bins
         self.environment = Environment(tree, 0, grid_of(d))
         self.sphere = self.environment.sphere
-        self.visibility = None if visibility is None else Visibility(visibility, tiles, len(self.bright_tiles))
+        self.visibility = None if visibility is None else Visibility(visibility, tiles if hasattr(tiles, "before") else None)
         self.portals = None if portals is None else Portals(portals, self.visibility)
 
     def point(self, normal, position=None):
@@ -126,21 +126,10 @@ class Local:
         mixture = [(self.bins[b][0], m * self.bins[b][1]) for b, m in served]
         self.weigh(out, [(row, w) for row, w in mixture if w > 0])
         if position is not None and self.visibility is not None and out.mixture is not None:
-            self.look_from(out, self.visibility.cells(position, n))
+            out.cells = self.visibility.cells(position, n)
             if self.portals is not None and out.cells:
                 out.visible_portals = self.portals.visible_portals(out.cells, self.visibility.coordinates(position, n))
         return out
-
-    def look_from(self, out, cells):
-        """§12.2: the weights as the position sees them."""
-        if not cells:
-            return
-        out.cells = cells
-        visible = Visibility.visibility(cells, 0)
-        out.mixture = [(row, w * visible) for row, w in out.mixture]
-        out.weights = [w * Visibility.visibility(cells, 1 + k) for k, w in enumerate(out.weights)]
-        out.light_sum, out.row_sum = sum_of(out.weights), sum_of([w for _, w in out.mixture])
-        out.S = out.light_sum + out.row_sum
 
     def grid_bin(self, n):
         column, row = self.grid.grid(n)[1]

@@ -62,7 +62,7 @@ class NormalRows:
             node, top = waiting.pop()
             node.is_split = False
             if node.halves:
-                node.is_split = bits.take(1) == 1
+                node.is_split, node.split = bits.take(1) == 1, found
                 require(top or not node.is_split, 6037)
                 found += node.is_split
                 waiting += [(half, node.is_split) for half in reversed(node.halves)]
@@ -109,6 +109,12 @@ class NormalRows:
         node, first = [group for group in self.groups if M(group[1]) <= at][-1]
         c = M(first + self.tiles_below(node)) - M(first)
         u[0] = clamp((x - M(first)) / c, 0, 1)
+        tile, c = self.draw_below(M, node, first, u)
+        return tile, c / 2.0**52
+
+    def draw_below(self, M, node, first, u):
+        """By u[1]: a tile below a node whose first one is `first`, and its c."""
+        c = M(first + self.tiles_below(node)) - M(first)
         x = u[1] * float(c)
         m = min(math.floor(x), c - 1)
         while node.is_split:
@@ -120,13 +126,17 @@ class NormalRows:
             node = node.halves[is_upper]
         c = M(first + 1) - M(first)
         u[1] = clamp(x / c, 0, 1)
-        return first, c / 2.0**52
+        return first, c
 
-    def find(self, mixture, square):
-        node, M = self.tree.root, self.mixed(mixture)
+    def tile_of(self, square):
+        node = self.tree.root
         while node.is_split:
             node = node.halves[square[node.axis] >= node.halves[1].box[node.axis][0]]
-        return node.tile, (M(node.tile + 1) - M(node.tile)) / 2.0**52
+        return node.tile
+
+    def find(self, mixture, square):
+        tile, M = self.tile_of(square), self.mixed(mixture)
+        return tile, (M(tile + 1) - M(tile)) / 2.0**52
 
     def sample_within(self, _tree, tile, p, u, box, _s):
         """§6.3 from a tile on: u are shares of its steps."""

@@ -2,9 +2,10 @@
 import math
 import struct
 
+from .halvings import share
 from .refused import require
 from .sphere import clamp, direction_of
-from .tiles import TILE, sum_of
+from .tiles import sum_of
 from .tree import LEAST
 
 ROW, NO_COLUMN = 1 << 28, 0xFFFF
@@ -22,14 +23,14 @@ class Row:
 
 
 class Visibility:
-    def __init__(self, data, tiles, bright_tile_count):
-        require(tiles is not None and len(data) >= 88, 7009)
+    def __init__(self, data, rows):
+        require(rows is not None and len(data) >= 88, 7009)
         split_count, row_count, column_count, further = struct.unpack_from("<4I", data)
-        of_tiles, width = tiles.count - 1, 1 + bright_tile_count + column_count
-        require(1 <= row_count < ROW and split_count < ROW and column_count <= of_tiles and further < 65536, 7009)
+        of_top, width = rows.count - 1, 1 + column_count
+        require(1 <= row_count < ROW and split_count < ROW and column_count <= of_top and further < 65536, 7009)
         at = 88 + 16 * split_count
         sets = 2 * row_count if further else 0
-        require(len(data) == at + 2 * (1 + further) * of_tiles + sets + row_count * width, 7009)
+        require(len(data) == at + 2 * (1 + further) * of_top + sets + row_count * width, 7009)
         numbers = struct.unpack_from("<18f", data, 16)
         self.low, self.high, self.transform = numbers[:3], numbers[3:6], numbers[6:]
         require(all(math.isfinite(x) for x in numbers), 7010)
@@ -38,16 +39,16 @@ class Visibility:
         self.check_walk(row_count)
         for split in self.splits:
             require(split.axis < 6 and math.isfinite(split.position) and 0 <= split.blend < math.inf, 7012)
-        columns = [struct.unpack_from(f"<{of_tiles}H", data, at + 2 * of_tiles * s) for s in range(1 + further)]
+        columns = [struct.unpack_from(f"<{of_top}H", data, at + 2 * of_top * s) for s in range(1 + further)]
         require(all([c for c in s if c != NO_COLUMN] == list(range(column_count)) for s in columns), 7013)
-        at += 2 * (1 + further) * of_tiles
+        at += 2 * (1 + further) * of_top
         set_of_row = struct.unpack_from(f"<{row_count}H", data, at) if further else [0] * row_count
         require(max(set_of_row) <= further, 7015)
         at += sets
-        rows = [data[at + width * r:at + width * (r + 1)] for r in range(row_count)]
-        self.odds_at, self.tiles = 1 + bright_tile_count, tiles
-        require(all(0 < code < 255 for row in rows for code in row[self.odds_at:]), 7014)
-        self.rows = [Row(row, columns[s]) for row, s in zip(rows, set_of_row)]
+        codes = [data[at + width * r:at + width * (r + 1)] for r in range(row_count)]
+        require(all(0 < code < 255 for row in codes for code in row[1:]), 7014)
+        self.rows = [Row(row, columns[s]) for row, s in zip(codes, set_of_row)]
+        self.tiles = rows
 
     def first(self):
         return 0 if self.splits else ROW
@@ -95,54 +96,58 @@ class Visibility:
         return [(self.rows[node & ~ROW], weight) for node, weight in found]
 
     @staticmethod
-    def visibility(cells, index):
-        return sum_of([w * ((16 + row.codes[index] % 16) * 2.0**(row.codes[index] // 16 - 20)) for row, w in cells])
+    def visibility(cells):
+        return sum_of([w * ((16 + row.codes[0] % 16) * 2.0**(row.codes[0] // 16 - 20)) for row, w in cells])
 
-    def odds(self, cells, node):
+    @staticmethod
+    def odds(cells, split):
         """None where no cell has a column."""
-        columns = [row.columns[node] for row, _ in cells]
+        columns = [row.columns[split] for row, _ in cells]
         if all(column == NO_COLUMN for column in columns):
             return None
-        book, at = self.tiles.codebook, self.odds_at
-        return sum_of([weight * (book[row.codes[at + column]] if column != NO_COLUMN else 32767.5)
+        return sum_of([weight * (share(row.codes[1 + column], 8) / 2.0**31 if column != NO_COLUMN else 0.5)
                        for column, (row, weight) in zip(columns, cells)])
 
-    def parts(self, mixture, cells, node, v):
-        """What falls into the two parts of a split, of each row and, as the position sees it, together."""
-        tiles = self.tiles
-        lower = [vk * (tiles.codebook[tiles.rows[row, node]] * (1 / 65535)) for vk, (row, _) in zip(v, mixture)]
-        upper = [vk - lk for vk, lk in zip(v, lower)]
-        low, high = sum_of(lower), sum_of(upper)
-        odds = self.odds(cells, node)
-        if odds is not None:
-            low, high = low * odds, high * (65535 - odds)
-        return (lower, upper), (low, high)
+    def descend(self, mixture, cells, choose):
+        """To the last node with odds: it, its first tile and q. choose(node, low, high): whether to the upper half."""
+        M, node, q = self.tiles.mixed(mixture), self.tiles.tree.root, 1.0
+        first, end = 0, self.tiles.count
+        while node.is_split:
+            odds = self.odds(cells, node.split)
+            if odds is None:
+                break
+            middle = self.tiles.first_tile(node.halves[1])
+            lower, mass = M(middle) - M(first), M(end) - M(first)
+            part = [lower * odds, (mass - lower) * (1 - odds)]
+            upper = choose(node, *part)
+            if not part[upper] > 0:
+                return node, first, 0.0
+            q = q * (part[upper] / (part[0] + part[1]))
+            first, end = (middle, end) if upper else (first, middle)
+            node = node.halves[upper]
+        return node, first, q
 
     def draw(self, mixture, cells, u):
         """Changes u; returns the tile and its q."""
-        v, q, node = [w for _, w in mixture], 1.0, self.tiles.first()
-        while not node & TILE:
-            split = self.tiles.splits[node]
-            a = split.axis
-            of_rows, (low, high) = self.parts(mixture, cells, node, v)
-            upper = int(u[a] * (low + high) >= low and high > 0)
-            if upper:
-                u[a], q = clamp((u[a] * (low + high) - low) / high, 0, 1), q * (high / (low + high))
-            else:
-                u[a], q = clamp(u[a] * (low + high) / low, 0, 1), q * (low / (low + high))
-            v, node = of_rows[upper], split.child[upper]
-        return node & ~TILE, max(q, LEAST)
+        def choose(node, low, high):
+            x = u[node.axis] * (low + high)
+            upper = int(x >= low and high > 0)
+            u[node.axis] = clamp((x - low) / high if upper else x / low, 0, 1)
+            return upper
+
+        node, first, q = self.descend(mixture, cells, choose)
+        M = self.tiles.mixed(mixture)
+        mass = M(first + self.tiles.tiles_below(node)) - M(first)
+        tile, c = self.tiles.draw_below(M, node, first, u)
+        return tile, max(q * (c / mass), LEAST)
 
     def find(self, mixture, cells, square):
         """The tile of a square and its q."""
-        v, q, lit, node = [w for _, w in mixture], 1.0, bool(mixture), self.tiles.first()
-        while not node & TILE:
-            split = self.tiles.splits[node]
-            upper = int(square[split.axis] >= split.position)
-            of_rows, part = self.parts(mixture, cells, node, v)
-            if part[upper] > 0:
-                q = q * (part[upper] / (part[0] + part[1]))
-            else:
-                lit = False
-            v, node = of_rows[upper], split.child[upper]
-        return node & ~TILE, max(q, LEAST) if lit else 0.0
+        M = self.tiles.mixed(mixture)
+        tile = self.tiles.tile_of(square)
+        node, first, q = self.descend(
+            mixture, cells, lambda node, low, high: int(tile >= self.tiles.first_tile(node.halves[1])))
+        c = M(tile + 1) - M(tile)
+        if not (q > 0 and c > 0):
+            return tile, 0.0
+        return tile, max(q * (c / (M(first + self.tiles.tiles_below(node)) - M(first))), LEAST)

@@ -58,21 +58,14 @@ LocalDraft shared_draft(const compress::LocalFit& fit, const compress::Target& t
     return draft;
 }
 
-/// Of a file with visibility cells: one part in so many is for all that is there without them.
-constexpr std::uint64_t kLocalPart = 4;
-
 /// The bytes of a file, before compression.
 struct Budget {
     std::uint64_t whole; ///< for a tree of the environment alone
-    std::uint64_t local; ///< for that, and all else that is there without visibility cells
+    std::uint64_t local; ///< for that, and all else
 };
 
-Budget budget_of(const LocalOptions& options, std::uint64_t all, compress::WholeTree tree) {
-    const std::uint64_t whole = tree == compress::WholeTree::own ? std::min(whole_tree_bytes(all), all) : 0;
-    const std::uint64_t others = all - whole;
-    if (!options.visibility.scene) return {whole, all};
-    return {whole,
-            whole + (options.visibility.local_bytes > 0 ? options.visibility.local_bytes : others / kLocalPart)};
+Budget budget_of(std::uint64_t all, compress::WholeTree tree) {
+    return {tree == compress::WholeTree::own ? std::min(whole_tree_bytes(all), all) : 0, all};
 }
 
 std::uint64_t bytes_of(const LocalDraft& draft) { return compress::store(draft.tree, draft.description).size(); }
@@ -99,36 +92,9 @@ std::uint64_t least_bytes(const compress::Target& target, const Source& source, 
     return bytes_of(shared_draft(fitter.outlined(64), target, source, options, bins.bins())) + kSlack;
 }
 
-/// The file in which what is there without visibility cells, and without a tree of the environment alone, has
-/// `local` bytes.
-std::uint64_t whole_of(const LocalOptions& options, std::uint64_t local, compress::WholeTree tree) {
-    const bool part = options.visibility.scene && options.visibility.local_bytes == 0;
-    const std::uint64_t others = part ? local * kLocalPart : local;
+/// The file in which all but a tree of the environment alone has `others` bytes.
+std::uint64_t whole_of(std::uint64_t others, compress::WholeTree tree) {
     return tree == compress::WholeTree::own ? file_of_others(others) : others;
-}
-
-/// Adds visibility cells in what `budget` leaves.
-void add_visibility(LocalDraft& draft, const compress::Target& target, const LocalOptions& options,
-                    std::uint64_t budget, const Progress& progress) {
-    const std::vector<std::uint8_t> bytes = compress::store(draft.tree, draft.description);
-    const File file = opened(bytes);
-    compress::VisibilitySize size;
-    const std::uint64_t record =
-        (sizeof(AcdfChunk) + ACDF_ALIGNMENT) * (options.visibility.portals.empty() ? 1 : 2);
-    size.bytes = budget > bytes.size() + record ? budget - bytes.size() - record : 0;
-    compress::VisibilityScene scene = options.visibility.scene;
-    if (!options.visibility.portals.empty())
-        scene.portals = std::make_shared<const compress::PortalSet>(
-            compress::make_portals(target, options.visibility.portals, size.bytes / 8));
-    for (compress::Chunk& chunk : compress::fit_visibility(file.local().data(), file.description().bin_count, scene,
-                                                           options.visibility.frame, size, [&](double share) {
-                                                               if (progress)
-                                                                   progress(0.2 + 0.7 * share,
-                                                                            "tracing visibility");
-                                                           }))
-        draft.description.chunks.push_back(std::move(chunk));
-    const std::uint64_t made = bytes_of(draft);
-    if (made > budget) throw OutOfReach(budget, made); // a single cell, or a map of portals, is more than is left
 }
 
 /// More tiles, where grids are as fine as they can be and leave `left` of `budget` bytes: false where there are
@@ -179,7 +145,7 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
                   std::uint64_t all, WholeChoice choice, double max_weight, Tried& tried, Least least,
                   const Progress& progress) {
     const compress::WholeTree tree = choice.tree;
-    const Budget budgets = budget_of(options, all, tree);
+    const Budget budgets = budget_of(all, tree);
     const std::uint64_t budget = budgets.local, others = budget - budgets.whole;
     LitBins& lit = bins_for(options, double(others), target, tried.bins);
     const NormalBins& bins = lit.bins();
@@ -190,8 +156,7 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
     if (max_weight > 0.0) size.max_weight = max_weight;
     if (const std::uint64_t bytes = bytes_of_bins(target, source, options, bins); bytes > others)
         throw OutOfReach(
-            all, whole_of(options,
-                          least == Least::unheard ? bytes : least_bytes(target, source, options, lit, size), tree));
+            all, whole_of(least == Least::unheard ? bytes : least_bytes(target, source, options, lit, size), tree));
     std::optional<compress::LocalFitter> fitter; // of so many tiles
     std::optional<Local> grown;                  // the best of those that left bytes
     for (int tries = 0, growths = 0;; ++tries) {
@@ -201,14 +166,13 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         const std::uint64_t bytes = bytes_of(draft);
         // What bright tiles and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
-        const bool checked = tree == compress::WholeTree::of_tiles && !options.visibility.scene;
+        const bool checked = tree == compress::WholeTree::of_tiles;
         if (fits && checked && !tried.alone.is_matched(fit.tree, all))
             return build_plain(target, source, options, all, next_choice(choice), max_weight, tried, least,
                                progress);
         const auto completed = [&] {
             fitter->fill(fit);
             draft = shared_draft(fit, target, source, options, bins);
-            if (options.visibility.scene) add_visibility(draft, target, options, all, progress);
             Local made = finish(std::move(draft), target, source, options, bins);
             // More tiles may take more from grids than they give.
             if (grown && grown->accuracy.relative_variance < made.accuracy.relative_variance)
@@ -226,8 +190,7 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         const auto miss = static_cast<std::int64_t>(budget) - static_cast<std::int64_t>(bytes);
         const std::int64_t next = static_cast<std::int64_t>(size.inside_bytes) + miss - 192;
         if (next < 64 || tries == 6) {
-            if (size.tiles <= 2)
-                throw OutOfReach(all, whole_of(options, bytes - std::min(bytes, budgets.whole), tree));
+            if (size.tiles <= 2) throw OutOfReach(all, whole_of(bytes - std::min(bytes, budgets.whole), tree));
             size.tiles = size.tiles * 3 / 4;
             fitter.reset();
             size.inside_bytes = size_for(options, bins, double(others)).inside_bytes;
@@ -268,7 +231,7 @@ compress::LocalFit fit_cells(const compress::Target& target, const Source& sourc
         if (size.whole == compress::WholeTree::own) {
             fitter.refit_whole(whole_tree_bytes(file_of_others(bytes(fit))));
             fit = fitter.outlined(size.inside_bytes);
-        } else if (!options.visibility.scene && !alone.is_matched(fit.tree, bytes(fit))) {
+        } else if (!alone.is_matched(fit.tree, bytes(fit))) {
             continue;
         }
         fitter.fill(fit);

@@ -2,8 +2,10 @@
 
 #include "build/local_draft.h"
 #include "compress/local/halved/fit.h"
+#include "compress/visibility/fit.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 namespace acdf::build {
@@ -16,6 +18,8 @@ using compress::NormalBins;
 constexpr std::uint32_t kCountedAt = 8; // subdivisions of bins by which normals are counted
 constexpr std::uint64_t kFixed = 1500;  // bytes of a file beside bins and chunks of the tree, about
 constexpr double kBytesOfCell = 3.0;    // of a file, about
+/// Of a file with visibility cells: one part in so many is for all that is there without them.
+constexpr std::uint64_t kLocalPart = 4;
 
 class HalvedLocals {
 public:
@@ -68,7 +72,16 @@ private:
         return size;
     }
 
-    Local of_bytes(std::uint64_t bytes, const Progress& progress) {
+    /// Of what of a file is there without visibility cells.
+    std::uint64_t local_bytes() const {
+        const SceneVisibility& visibility = options_.visibility;
+        if (!visibility.scene) return budget_;
+        return visibility.local_bytes > 0 ? visibility.local_bytes : budget_ / kLocalPart;
+    }
+
+    Local of_bytes(std::uint64_t budget, const Progress& progress) {
+        budget_ = budget;
+        const std::uint64_t bytes = local_bytes();
         const NormalBins bins = bins_for(double(bytes));
         LocalHalvings nothing;
         nothing.halvings.axes = {-1};
@@ -76,7 +89,7 @@ private:
         nothing.roots.assign(bins.normals.size(), ACDF_NO_ROOT);
         if (options_.mis) nothing.records.resize(bins.normals.size(), {1.0f, 0.0f});
         const std::uint64_t least = stored(nothing, bins).size();
-        if (least > bytes) throw OutOfReach(bytes, least);
+        if (least > bytes) throw OutOfReach(budget, budget - bytes + least);
         const std::uint64_t room = bytes - least + 2 * ACDF_ALIGNMENT; // two chunks of a line each
         compress::LocalHalvingsSize size = size_for(bins, double(room));
         size.bytes = room;
@@ -97,13 +110,39 @@ private:
     }
 
     Local made(const NormalBins& bins, const compress::LocalHalvingsSize& size, const Progress& progress) {
+        const double fitting = options_.visibility.scene ? 0.2 : 0.8; // of the time
         const LocalHalvings fit = fitter_.fit(bins, size, [&](double share) {
-            if (progress) progress(0.8 * share, "fitting");
+            if (progress) progress(fitting * share, "fitting");
         });
         const Store store = [&](const compress::Description& description, AcdfCodec codec) {
             return compress::store(fit.halvings, fit.roots, description, codec);
         };
-        return finish(described(fit, bins), store, target_, source_, options_, bins);
+        compress::Description description = described(fit, bins);
+        if (options_.visibility.scene) add_visibility(description, store, progress);
+        return finish(std::move(description), store, target_, source_, options_, bins);
+    }
+
+    /// Adds visibility cells in what the rest leaves of the budget.
+    void add_visibility(compress::Description& description, const Store& store, const Progress& progress) {
+        const SceneVisibility& visibility = options_.visibility;
+        const std::vector<std::uint8_t> bytes = store(description, ACDF_CODEC_NONE);
+        const File file = opened(bytes);
+        const std::uint64_t records = (sizeof(AcdfChunk) + ACDF_ALIGNMENT) * (visibility.portals.empty() ? 1 : 2);
+        compress::VisibilitySize size;
+        size.bytes = budget_ > bytes.size() + records ? budget_ - bytes.size() - records : 0;
+        compress::VisibilityScene scene = visibility.scene;
+        if (!visibility.portals.empty())
+            scene.portals = std::make_shared<const compress::PortalSet>(
+                compress::make_portals(target_, visibility.portals, size.bytes / 8));
+        const auto tracing = [&](double share) {
+            if (progress) progress(0.2 + 0.7 * share, "tracing visibility");
+        };
+        for (compress::Chunk& chunk : compress::fit_visibility(file.local().data(), file.description().bin_count,
+                                                               scene, visibility.frame, size, tracing))
+            description.chunks.push_back(std::move(chunk));
+        // A single cell, or a map of portals, may be more than is left.
+        const std::uint64_t made = store(description, ACDF_CODEC_NONE).size();
+        if (made > budget_) throw OutOfReach(budget_, made);
     }
 
     const compress::Target& target_;
@@ -111,6 +150,7 @@ private:
     const LocalOptions& options_;
     compress::LocalHalvingsFitter fitter_;
     std::uint32_t code_bits_ = 7;
+    std::uint64_t budget_ = 0; ///< of the file that is made
 };
 
 } // namespace

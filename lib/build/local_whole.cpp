@@ -42,8 +42,7 @@ std::uint64_t file_of_others(std::uint64_t others) {
 }
 
 WholeChoice first_choice(const LocalOptions& options) {
-    const bool of_tiles =
-        options.shape == compress::LocalShape::small && (!options.mis || options.visibility.scene);
+    const bool of_tiles = options.shape == compress::LocalShape::small && !options.mis;
     return {of_tiles ? compress::WholeTree::of_tiles : compress::WholeTree::own, 0.0};
 }
 

@@ -63,7 +63,7 @@ Colour shown(const LocalEnvironmentView& view, const measure::Hit& hit, double a
         normal[k] = static_cast<float>(hit.n[k]);
     }
     const AcdfLocalPoint point = view.at(position, normal);
-    const AcdfLocalPlace& place = point.by.place;
+    const AcdfLocalPlace& place = point.place;
     Colour out = point.cells > 0 ? Colour{} : zero_colour;
     for (std::size_t i = 0; i < point.cells; ++i) {
         const AcdfVisibilityTable& table = view.data().visibility;

@@ -107,10 +107,11 @@ void check_bins(const LocalOptions& options) {
     require(options.shape == LocalShape::small || options.shape == LocalShape::fast ||
                 options.shape == LocalShape::halvings || options.shape == LocalShape::automatic,
             "shape is not a LocalShape");
-    require(
-        options.shape != LocalShape::halvings || may_be_halvings(options),
-        "one tree of halvings is for bins that share it, without max_weight and visibility cells, and beside no "
-        "MIS partner but the cosine by the balance heuristic");
+    require(options.shape != LocalShape::halvings || may_be_halvings(options),
+            "one tree of halvings is for bins that share it, without max_weight, and beside no "
+            "MIS partner but the cosine by the balance heuristic");
+    require(options.shape != LocalShape::small || !options.visibility.point,
+            "the small shape has no visibility cells");
     require(options.shape != LocalShape::fast || may_be_fast(options),
             "the fast shape is for bins that share tiles, without max_weight, visibility cells or an MIS partner");
 }
@@ -118,7 +119,7 @@ void check_bins(const LocalOptions& options) {
 } // namespace
 
 bool may_be_halvings(const LocalOptions& options) {
-    return options.sharing && options.max_weight == 0.0 && !options.visibility.point &&
+    return options.sharing && options.max_weight == 0.0 &&
            (options.mis.kind == ACDF_PARTNER_NONE ||
             (options.mis.kind == ACDF_PARTNER_COSINE && options.mis.heuristic == ACDF_HEURISTIC_BALANCE));
 }

@@ -110,9 +110,8 @@ Status LearnedVisibility::make(const void* file, std::size_t size, const LearnOp
             const File& given = data->given->file;
             if (given.kind() != ACDF_KIND_LOCAL) throw std::invalid_argument("a file of acdf local is needed");
             data->local = given.local().data();
-            if (!data->local.blend.tiles || data->local.fast.grid)
-                throw std::invalid_argument(
-                    "visibility cells need a file of the small shape: acdf local --shape small");
+            if (!data->local.rows_of_normals)
+                throw std::invalid_argument("visibility cells need a file of acdf local without --no-sharing");
             if (given.partner())
                 throw std::invalid_argument("a file made for MIS has no light where its partner suffices; make it "
                                             "without --mis");

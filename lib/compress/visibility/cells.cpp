@@ -193,6 +193,16 @@ std::vector<double> VisibilityCells::loss(const Range& range) const {
     return out;
 }
 
+std::vector<double> VisibilityCells::light(const Range& range) const {
+    std::vector<double> out(light_.parts, 0.0);
+    for (std::uint32_t cell = range.begin; cell < range.end; ++cell) {
+        const Node& node = nodes_[node_of_cell_[cell]];
+        for (std::uint32_t i = node.begin; i < node.end; ++i)
+            for (std::size_t p = 0; p < out.size(); ++p) out[p] += double{std::fabs(light_.of(order_[i])[p])};
+    }
+    return out;
+}
+
 /// The smallest extent of the cells below a node that touch its low (or high) side on an axis.
 double VisibilityCells::thinnest(std::uint32_t index, std::uint32_t axis, bool at_low) const {
     const Node& node = nodes_[index];

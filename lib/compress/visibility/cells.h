@@ -67,6 +67,8 @@ public:
     /// Of each part, summed over the cells of a range: by how much its root of the second moment is larger than it
     /// were if all rays of a cell either arrived or did not.
     std::vector<double> loss(const Range& range) const;
+    /// Of each part, what it would give to the points of a range of cells.
+    std::vector<double> light(const Range& range) const;
 
 private:
     struct Node {

@@ -1,7 +1,9 @@
 #include "compress/visibility/chunk.h"
 
-#include "compress/fit/shared.h"
+#include "compress/halvings/codes.h"
 #include "compress/visibility/rows.h"
+
+#include <acdf/halvings.h>
 
 namespace acdf::compress {
 namespace {
@@ -12,25 +14,39 @@ void append(std::vector<std::uint8_t>& bytes, const Record* records, std::size_t
     bytes.insert(bytes.end(), first, first + count * sizeof(Record));
 }
 
+/// What parts would give, and what arrives of it.
+struct Given {
+    double all = 0.0, seen = 0.0;
+
+    double share(const Given& before) const { return (seen - before.seen) / (all - before.all); }
+};
+
+/// The odds of the column that parts [first, end) are parted at, and of those below it.
+void encode_odds(const VisibilityParts& parts, const std::vector<Given>& before, std::size_t first, std::size_t end,
+                 std::uint8_t*& out, std::size_t& column) {
+    static const HalvingCodes codes(ACDF_ODDS_BITS);
+    if (end - first < 2) return;
+    const std::size_t middle = parts.part_of_column()[column++];
+    const double lower = before[middle].share(before[first]), upper = before[end].share(before[middle]);
+    *out++ = static_cast<std::uint8_t>(codes.best(ACDF_STEPS, lower, upper, 1.0, 1.0));
+    encode_odds(parts, before, first, middle, out, column);
+    encode_odds(parts, before, middle, end, out, column);
+}
+
 } // namespace
 
 void encode_visibility(const VisibilityParts& parts, const float* light, const float* factors, std::uint8_t* out) {
     constexpr double kUnseen = 1e-6; // of what no point of the cell sees: it has the factor of the cell around it
-    std::vector<double> all(parts.boxes()), seen(parts.boxes());
-    double whole = 0.0, visible = 0.0;
-    for (std::size_t p = 0; p < parts.boxes(); ++p) {
-        all[p] = double{light[p]} + kUnseen;
-        seen[p] = all[p] * double{factors[p]};
-        whole += all[p];
-        visible += seen[p];
+    Given whole;
+    std::vector<Given> before{whole}; // all parts before each
+    for (std::size_t p = 0; p < parts.count(); ++p) {
+        const double all = double{light[p]} + kUnseen;
+        whole = {whole.all + all, whole.seen + all * double{factors[p]}};
+        before.push_back(whole);
     }
-    *out++ = visibility_code(whole > 0.0 ? visible / whole : 1.0);
-    for (std::size_t p = parts.boxes(); p < parts.count(); ++p) *out++ = visibility_code(double{factors[p]});
-    const std::vector<std::array<double, 2>> without = parts.sides(all.data()), with = parts.sides(seen.data());
-    for (std::size_t c = 0; c < with.size(); ++c) {
-        const double lower = with[c][0] / without[c][0], upper = with[c][1] / without[c][1];
-        *out++ = row_code(lower, upper);
-    }
+    *out++ = visibility_code(whole.seen / whole.all);
+    std::size_t column = 0;
+    encode_odds(parts, before, 0, parts.count(), out, column);
 }
 
 Chunk VisibilityChunk::stored() const {

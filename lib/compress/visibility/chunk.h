@@ -17,7 +17,7 @@ void encode_visibility(const VisibilityParts& parts, const float* light, const f
 struct VisibilityChunk {
     AcdfVisibility header{}; ///< counts are those of the rest
     std::vector<AcdfVisibilitySplit> splits;
-    std::vector<std::uint16_t> columns;    ///< sets of them
+    std::vector<AcdfColumn> columns;       ///< sets of them
     std::vector<std::uint16_t> set_of_row; ///< empty where there is one set
     std::vector<std::uint8_t> rows;
 

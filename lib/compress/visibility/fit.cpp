@@ -15,7 +15,7 @@
 namespace acdf::compress {
 namespace {
 
-/// Splits of tiles that cells distinguish: with more of them there are fewer cells (docs/visibility.md).
+/// Splits that cells distinguish: with more of them there are fewer cells (docs/visibility.md).
 constexpr std::uint32_t kColumns = 127;
 /// The same for files with portals, through which most samples are taken: there cells gain more than columns do.
 constexpr std::uint32_t kColumnsBesidePortals = 31;
@@ -104,8 +104,8 @@ private:
 struct Counts {
     std::uint32_t cells = 1, regions = 1;
 };
-Counts counts_for(std::uint64_t bytes, std::uint64_t width, std::uint64_t tile_splits) {
-    const std::uint64_t set = tile_splits * sizeof(std::uint16_t), cell = width + sizeof(AcdfVisibilitySplit);
+Counts counts_for(std::uint64_t bytes, std::uint64_t width, std::uint64_t columns) {
+    const std::uint64_t set = columns * sizeof(AcdfColumn), cell = width + sizeof(AcdfVisibilitySplit);
     const std::uint64_t room = bytes > sizeof(AcdfVisibility) + set ? bytes - sizeof(AcdfVisibility) - set : 0;
     const auto clamped = [](std::uint64_t cells) {
         return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(cells, 1, ACDF_VISIBILITY_ROW - 1));
@@ -156,19 +156,18 @@ void divide(DividedVisibility& out, const VisibilityParts& parts, const Visibili
 std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, const VisibilityScene& scene,
                                   const VisibilityFrame& frame, const VisibilitySize& size,
                                   const std::function<void(double)>& progress) {
-    if (!local.blend.tiles || local.fast.grid)
-        throw std::invalid_argument("bins that do not share tiles, and the fast shape, have no visibility cells");
+    if (!local.rows_of_normals)
+        throw std::invalid_argument("bins without rows on one tree of halvings have no visibility cells");
     const auto report = [&](double share) {
         if (progress) progress(share);
     };
-    const std::uint32_t splits_of_tiles = local.blend.tiles->tile_count - 1;
     const PortalSet* portals = scene.portals.get();
     const std::uint32_t usual = portals ? kColumnsBesidePortals : kColumns;
     const VisibilityParts coarse(local, bins, size.columns > 0 ? size.columns : usual);
-    const std::uint64_t width = 1 + local.bright_tile_count + coarse.column_count();
+    const std::uint64_t width = 1 + coarse.column_count();
     const Counts counts = portals ? counts_for(size.bytes - std::min<std::uint64_t>(size.bytes, portals->bytes()),
-                                               width + portals->row_bytes(), splits_of_tiles)
-                                  : counts_for(size.bytes, width, splits_of_tiles);
+                                               width + portals->row_bytes(), coarse.column_count())
+                                  : counts_for(size.bytes, width, coarse.column_count());
 
     DividedVisibility division;
     division.header = header_of(scene.points, frame);
@@ -178,15 +177,16 @@ std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, co
     const std::vector<VisibleShare> shares =
         shares_of(CellNumbers(division.header, division.splits, tree.cell_count()), division.points);
 
-    std::vector<std::uint16_t> columns(regions.size() * splits_of_tiles), set_of_row(tree.cell_count());
+    std::vector<AcdfColumn> columns(regions.size() * coarse.column_count());
+    std::vector<std::uint16_t> set_of_row(tree.cell_count());
     std::vector<std::uint8_t> rows(tree.cell_count() * width);
     std::atomic<std::size_t> done{0};
     parallel_for(std::size_t{0}, regions.size(), [&](std::size_t r) {
-        const VisibilityParts parts(coarse, tree.loss(regions[r]));
+        const VisibilityParts parts(coarse, tree.loss(regions[r]), tree.light(regions[r]));
         const VisibilityRows told =
             visibility_rows(parts, tree, regions[r], shares, division.points, scene.occluded, division.light.dark);
-        std::copy(parts.columns().begin(), parts.columns().end(),
-                  columns.begin() + std::ptrdiff_t(r * splits_of_tiles));
+        const std::vector<AcdfColumn>& own = parts.columns();
+        std::copy(own.begin(), own.end(), columns.begin() + std::ptrdiff_t(r * own.size()));
         for (std::uint32_t cell = regions[r].begin; cell < regions[r].end; ++cell) {
             const std::size_t first = (cell - regions[r].begin) * parts.count();
             encode_visibility(parts, &told.all[first], &told.factors[first], &rows[cell * width]);

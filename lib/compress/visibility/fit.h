@@ -17,12 +17,12 @@ struct VisibilityFrame {
 
 struct VisibilitySize {
     std::uint64_t bytes = 3 << 20; ///< of the chunks, at most (but for those of one cell)
-    std::uint32_t columns = 0;     ///< splits of tiles that cells distinguish; 0: as suits the size
+    std::uint32_t columns = 0;     ///< splits that cells distinguish; 0: as suits the size
 };
 
-/// The chunk PLAC, and PORT where the scene has portals, for a local environment whose bins share tiles; positions
-/// of the scene's points are those of cells. The same for any number of threads. Throws std::invalid_argument where
-/// there are no tiles or no points.
+/// The chunk PLAC, and PORT where the scene has portals, for a local environment on one tree of halvings;
+/// positions of the scene's points are those of cells. The same for any number of threads. Throws
+/// std::invalid_argument where it is on none, and where there are no points.
 std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, const VisibilityScene& scene,
                                   const VisibilityFrame& frame, const VisibilitySize& size,
                                   const std::function<void(double)>& progress = {});

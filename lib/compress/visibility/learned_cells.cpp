@@ -284,7 +284,7 @@ std::uint32_t list_splits(LearnedCell& cell, std::uint32_t& cells, std::vector<A
 
 /// Cells that fill a chunk.
 std::uint32_t cells_for(std::uint64_t bytes, std::size_t width, const VisibilityParts& parts) {
-    const std::uint64_t beside = sizeof(AcdfVisibility) + parts.columns().size() * sizeof(std::uint16_t);
+    const std::uint64_t beside = sizeof(AcdfVisibility) + parts.column_count() * sizeof(AcdfColumn);
     const std::uint64_t cells = bytes > beside ? (bytes - beside) / (width + sizeof(AcdfVisibilitySplit)) : 0;
     return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(cells, 1, ACDF_VISIBILITY_ROW - 1));
 }
@@ -307,7 +307,7 @@ Chunk learned_visibility(const VisibilityParts& parts, const VisibilityCounts::S
     }
     tree.grow(root);
 
-    const std::size_t width = 1 + parts.local().bright_tile_count + parts.column_count();
+    const std::size_t width = 1 + parts.column_count();
     VisibilityChunk out;
     out.header.row_count = divide_best(root, cells_for(size.bytes, width, parts));
     out.header.column_count = parts.column_count();

@@ -2,32 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
+#include <numeric>
 
 namespace acdf::compress {
 namespace {
 
-std::uint32_t split_count(const AcdfLocal& local) { return local.blend.tiles->tile_count - 1; }
+/// Tiles that follow each other: what they are worth to be told apart from others, and their solid angle.
+struct Run {
+    double worth, angle;
 
-/// The boxes of tiles: two ranges each, behind one another.
-std::vector<AcdfRange> boxes_of(const AcdfLocal& local) {
-    const std::uint32_t splits = split_count(local);
-    std::vector<AcdfRange> of_split(2 * std::size_t{splits} + 2), out(2 * (std::size_t{splits} + 1));
-    acdf_sphere_ranges(local.environment.columns, local.environment.rows, of_split.data());
-    if (splits == 0) return of_split;
-    for (std::uint32_t s = 0; s < splits; ++s) {
-        const AcdfSplit& split = local.blend.splits[s];
-        for (std::uint32_t k = 0; k < 2; ++k) {
-            const std::uint32_t child = split.child[k];
-            AcdfRange* box = child & ACDF_TILE_FLAG ? &out[2 * std::size_t{child & ~ACDF_TILE_FLAG}]
-                                                    : &of_split[2 * std::size_t{child}];
-            box[0] = of_split[2 * std::size_t{s}];
-            box[1] = of_split[2 * std::size_t{s} + 1];
-            acdf_range_cut(&box[split.place & 7u], split.place >> 3, static_cast<int>(k));
-        }
-    }
-    return out;
-}
+    /// An edge of what hides light crosses it the more likely the wider it is.
+    double cost() const { return worth * std::sqrt(angle); }
+};
+Run operator+(const Run& a, const Run& b) { return {a.worth + b.worth, a.angle + b.angle}; }
 
 /// The bits of a number below 2^6 in reverse, over 2^6: van der Corput.
 double reversed(std::uint32_t k) {
@@ -39,208 +26,157 @@ double reversed(std::uint32_t k) {
 } // namespace
 
 VisibilityParts::VisibilityParts(const AcdfLocal& local, std::uint32_t bins, std::uint32_t columns)
-    : local_(local), light_(mean_tiles(bins)), boxes_(boxes_of(local)) {
-    cut(light_, columns);
+    : local_(local), rows_(*local.rows_of_normals), grid_(acdf_environment_grid(&local.environment)),
+      light_(mean_tiles(bins)) {
+    cut(light_, light_, columns);
 }
 
-VisibilityParts::VisibilityParts(const VisibilityParts& coarse, const std::vector<double>& loss)
-    : local_(coarse.local_), light_(coarse.light_), boxes_(coarse.boxes_) {
+VisibilityParts::VisibilityParts(const VisibilityParts& coarse, const std::vector<double>& loss,
+                                 const std::vector<double>& light)
+    : local_(coarse.local_), rows_(coarse.rows_), grid_(coarse.grid_), light_(coarse.light_) {
     constexpr double kElsewhere = 0.02; // of all: where no ray has found an edge there may be one
     double sum = 0.0;
-    for (std::size_t p = 0; p < coarse.boxes(); ++p) sum += loss[p];
+    for (std::size_t p = 0; p < coarse.count(); ++p) sum += loss[p];
     double all = 0.0;
     for (const double light : light_) all += light;
-    std::vector<double> worth(light_.size(), 0.0);
-    for (std::size_t p = 0; p < coarse.boxes(); ++p) {
+    std::vector<double> worth(light_.size(), 0.0), given(light_.size(), 0.0);
+    for (std::size_t p = 0; p < coarse.count(); ++p) {
         double own = 0.0;
-        for (const std::uint32_t tile : coarse.tiles_of_part_[p]) own += light_[tile];
-        for (const std::uint32_t tile : coarse.tiles_of_part_[p])
+        for (std::uint32_t tile = coarse.first_[p]; tile < coarse.first_[p + 1]; ++tile) own += light_[tile];
+        for (std::uint32_t tile = coarse.first_[p]; tile < coarse.first_[p + 1]; ++tile)
+            given[tile] = own > 0.0 ? light[p] * light_[tile] / own : 0.0;
+        for (std::uint32_t tile = coarse.first_[p]; tile < coarse.first_[p + 1]; ++tile)
             worth[tile] = (sum > 0.0 && own > 0.0 ? loss[p] / sum * light_[tile] / own : 0.0) +
                           kElsewhere * light_[tile] / all;
     }
-    cut(worth, coarse.column_count());
+    cut(worth, given, coarse.column_count());
 }
 
-void VisibilityParts::cut(const std::vector<double>& worth, std::uint32_t columns) {
-    choose(worth, columns);
-    number(split_count(local_) > 0 ? 0 : ACDF_TILE_FLAG);
-    box_count_ = tiles_of_part_.size();
-    part_of_tile_.resize(light_.size());
-    for (std::uint32_t p = 0; p < box_count_; ++p)
-        for (const std::uint32_t tile : tiles_of_part_[p]) part_of_tile_[tile] = p;
-    for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
-        part_of_tile_[local_.bright_tiles[k].tile] = static_cast<std::uint32_t>(box_count_) + k;
+/// Joins neighbours, those that cost least first, until no more parts are left.
+void VisibilityParts::cut(const std::vector<double>& worth, const std::vector<double>& light,
+                          std::uint32_t columns) {
+    std::vector<Run> runs;
+    for (std::uint32_t tile = 0; tile < worth.size(); ++tile) {
+        runs.push_back({worth[tile], solid_angle(tile)});
+        first_.push_back(tile);
+    }
+    const auto rise = [&](std::size_t i) {
+        return (runs[i] + runs[i + 1]).cost() - runs[i].cost() - runs[i + 1].cost();
+    };
+    std::vector<double> rises;
+    for (std::size_t i = 0; i + 1 < runs.size(); ++i) rises.push_back(rise(i));
+    while (runs.size() > std::size_t{columns} + 1) {
+        const auto least = static_cast<std::size_t>(std::min_element(rises.begin(), rises.end()) - rises.begin());
+        const auto next = static_cast<std::ptrdiff_t>(least) + 1;
+        runs[least] = runs[least] + runs[least + 1];
+        runs.erase(runs.begin() + next);
+        first_.erase(first_.begin() + next);
+        rises.erase(rises.begin() + next - 1);
+        if (least > 0) rises[least - 1] = rise(least - 1);
+        if (least < rises.size()) rises[least] = rise(least);
+    }
+    first_.push_back(rows_.splits + 1);
+    std::vector<double> before{0.0};
+    for (std::size_t p = 0; p < count(); ++p)
+        before.push_back(std::accumulate(light.begin() + first_[p], light.begin() + first_[p + 1], before.back()));
+    order(before, 0, static_cast<std::uint32_t>(count()), 0);
     aim();
+}
+
+/// Columns of parts [first, end), where `before` is the light of all parts before each: halves of about as much
+/// light.
+void VisibilityParts::order(const std::vector<double>& before, std::uint32_t first, std::uint32_t end,
+                            std::uint32_t depth) {
+    constexpr std::uint32_t kDeep = 40; // from there on halves of as many parts
+    if (end - first < 2) return;
+    const double half = 0.5 * (before[first] + before[end]);
+    std::uint32_t middle = (first + end) / 2;
+    if (depth < kDeep) {
+        const auto begin = before.begin() + first + 1;
+        middle =
+            first + 1 + static_cast<std::uint32_t>(std::lower_bound(begin, before.begin() + end - 1, half) - begin);
+        if (middle > first + 1 && half - before[middle - 1] < before[middle] - half) --middle;
+    }
+    const std::size_t own = columns_.size();
+    columns_.push_back({static_cast<std::uint16_t>(first_[middle]), 0});
+    part_of_column_.push_back(middle);
+    order(before, first, middle, depth + 1);
+    const std::size_t upper = columns_.size();
+    order(before, middle, end, depth + 1);
+    columns_[own].parts = static_cast<std::uint16_t>((middle - first < 2 ? 0x8000u : 0u) |
+                                                     (end - middle < 2 ? 0u : static_cast<std::uint32_t>(upper)));
 }
 
 /// What the bins give to each tile, in the mean.
 std::vector<double> VisibilityParts::mean_tiles(std::uint32_t bins) const {
-    const std::uint32_t splits = split_count(local_);
-    std::vector<double> out(splits + 1, splits == 0 ? 1.0 : 0.0), below(splits);
+    std::vector<double> out(rows_.splits + std::size_t{1}, 0.0);
     for (std::uint32_t b = 0; b < bins; ++b) {
         const AcdfBin& bin = local_.bins[b];
-        if (bin.root == ACDF_NO_ROOT || !(bin.share > 0.0f) || splits == 0) continue;
-        const std::uint8_t* row = local_.blend.rows + std::size_t{bin.root} * splits;
-        below[0] = 1.0;
-        for (std::uint32_t s = 0; s < splits; ++s) {
-            const double lower = local_.blend.tiles->codebook[row[s]] / 65535.0;
-            for (std::uint32_t k = 0; k < 2; ++k) {
-                const std::uint32_t child = local_.blend.splits[s].child[k];
-                const double p = below[s] * (k == 0 ? lower : 1.0 - lower);
-                if (child & ACDF_TILE_FLAG) out[child & ~ACDF_TILE_FLAG] += p;
-                else below[child] = p;
-            }
-        }
+        if (bin.root == ACDF_NO_ROOT || !(bin.share > 0.0f)) continue;
+        const std::uint32_t* before = acdf_row_before(&rows_, bin.root);
+        for (std::size_t t = 0; t < out.size(); ++t) out[t] += (before[t + 1] - before[t]) * 0x1p-31;
     }
     return out;
 }
 
-std::vector<double> VisibilityParts::mass_below(const std::vector<double>& tiles) const {
-    std::vector<double> out(split_count(local_), 0.0);
-    for (std::size_t s = out.size(); s-- > 0;)
-        for (const std::uint32_t child : local_.blend.splits[s].child)
-            out[s] += child & ACDF_TILE_FLAG ? tiles[child & ~ACDF_TILE_FLAG] : out[child];
-    return out;
-}
-
-/// Marks the splits that are columns, in columns_ with any number but ACDF_NO_COLUMN.
-void VisibilityParts::choose(const std::vector<double>& worth, std::uint32_t columns) {
-    const std::vector<double> mass = mass_below(worth);
-    const AcdfGrid grid = acdf_environment_grid(&local_.environment);
-    std::vector<double> angle(mass.size(), 0.0);
-    for (std::size_t s = mass.size(); s-- > 0;)
-        for (const std::uint32_t child : local_.blend.splits[s].child)
-            angle[s] += child & ACDF_TILE_FLAG
-                            ? acdf_grid_solid_angle(&grid, &boxes_[2 * std::size_t{child & ~ACDF_TILE_FLAG}])
-                            : angle[child];
-    columns_.assign(mass.size(), ACDF_NO_COLUMN);
-    using Entry = std::pair<double, std::uint32_t>; // worth, and number from the back: of equal ones the first
-    std::priority_queue<Entry> queue;
-    // An edge of what hides light crosses a box the more likely the wider it is.
-    const auto push = [&](std::uint32_t s) { queue.push({mass[s] * std::sqrt(angle[s]), ~s}); };
-    if (!mass.empty()) push(0);
-    for (std::uint32_t count = 0; count < columns && !queue.empty(); ++count) {
-        const std::uint32_t split = ~queue.top().second;
-        queue.pop();
-        columns_[split] = 0;
-        for (const std::uint32_t child : local_.blend.splits[split].child)
-            if (!(child & ACDF_TILE_FLAG)) push(child);
-    }
-}
-
-/// Numbers cuts and parts from a node on; returns what it is as a child.
-std::uint32_t VisibilityParts::number(std::uint32_t node) {
-    if (!(node & ACDF_TILE_FLAG) && columns_[node] != ACDF_NO_COLUMN) {
-        const auto cut = static_cast<std::uint32_t>(cuts_.size());
-        columns_[node] = static_cast<std::uint16_t>(cut);
-        cuts_.push_back({node, {}});
-        for (std::size_t k = 0; k < 2; ++k) {
-            const std::uint32_t child = number(local_.blend.splits[node].child[k]);
-            cuts_[cut].child[k] = child;
-        }
-        return cut;
-    }
-    std::vector<std::uint32_t> open{node}, tiles;
-    while (!open.empty()) {
-        const std::uint32_t now = open.back();
-        open.pop_back();
-        if (now & ACDF_TILE_FLAG) tiles.push_back(now & ~ACDF_TILE_FLAG);
-        else open.insert(open.end(), {local_.blend.splits[now].child[1], local_.blend.splits[now].child[0]});
-    }
-    tiles_of_part_.push_back(std::move(tiles));
-    return part | static_cast<std::uint32_t>(tiles_of_part_.size() - 1);
+double VisibilityParts::solid_angle(std::uint32_t tile) const {
+    AcdfRange range[2];
+    acdf_halved_ranges(acdf_row_tile(&rows_, tile)->box, range);
+    return acdf_grid_solid_angle(&grid_, range);
 }
 
 std::array<float, 3> VisibilityParts::place(std::uint32_t tile, double u0, double u1) const {
-    AcdfRange range[2] = {boxes_[2 * std::size_t{tile}], boxes_[2 * std::size_t{tile} + 1]};
     double u[2] = {u0, u1};
-    const AcdfBlend& blend = local_.blend;
-    if (blend.roots && blend.roots[tile] != ACDF_NO_ROOT) acdf_tree_sample(blend.tree, blend.roots[tile], u, range);
-    const AcdfGrid grid = acdf_environment_grid(&local_.environment);
-    const AcdfDirectionSample s = acdf_grid_position(&grid, range, u, 1.0);
+    const AcdfDirectionSample s =
+        acdf_rows_direction(local_.environment.halved, &grid_, acdf_row_tile(&rows_, tile), 1.0, u);
     return {s.direction[0], s.direction[1], s.direction[2]};
 }
 
 /// Directions of each part, as its light is spread.
 void VisibilityParts::aim() {
-    for (const std::vector<std::uint32_t>& own : tiles_of_part_) {
+    for (std::size_t p = 0; p < count(); ++p) {
+        const std::uint32_t end = first_[p + 1];
         double sum = 0.0;
-        for (const std::uint32_t tile : own) sum += light_[tile];
+        for (std::uint32_t tile = first_[p]; tile < end; ++tile) sum += light_[tile];
         const auto weight = [&](std::uint32_t tile) {
-            return sum > 0.0 ? light_[tile] / sum : 1.0 / double(own.size());
+            return sum > 0.0 ? light_[tile] / sum : 1.0 / double(end - first_[p]);
         };
-        std::size_t at = 0;
+        std::uint32_t at = first_[p];
         double before = 0.0;
         for (std::uint32_t i = 0; i < directions; ++i) {
             const double u = (i + 0.5) / directions;
-            while (at + 1 < own.size() && u >= before + weight(own[at])) before += weight(own[at++]);
-            const double inside = weight(own[at]) > 0.0 ? (u - before) / weight(own[at]) : 0.5;
-            directions_.push_back(place(own[at], acdf_clamp(inside, 0.0, 1.0), reversed(i) + 0.5 / directions));
+            while (at + 1 < end && u >= before + weight(at)) before += weight(at++);
+            const double inside = weight(at) > 0.0 ? (u - before) / weight(at) : 0.5;
+            directions_.push_back(place(at, acdf_clamp(inside, 0.0, 1.0), reversed(i) + 0.5 / directions));
         }
     }
-    for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
-        for (std::uint32_t i = 0; i < directions; ++i)
-            directions_.push_back(
-                place(local_.bright_tiles[k].tile, (i + 0.5) / directions, reversed(i) + 0.5 / directions));
 }
 
 std::vector<VisibilityParts::Tile> VisibilityParts::tiles(std::size_t part) const {
-    const AcdfGrid grid = acdf_environment_grid(&local_.environment);
     std::vector<Tile> out;
-    const auto add = [&](std::uint32_t number) {
-        const AcdfRange* box = &boxes_[2 * std::size_t{number}];
-        double middle[2] = {0.5, 0.5};
-        const AcdfRange range[2] = {box[0], box[1]};
-        const AcdfDirectionSample s = acdf_grid_position(&grid, range, middle, 1.0);
-        out.push_back(
-            {{s.direction[0], s.direction[1], s.direction[2]}, acdf_grid_solid_angle(&grid, box), light_[number]});
-    };
-    if (part >= box_count_) add(local_.bright_tiles[part - box_count_].tile);
-    else
-        for (const std::uint32_t number : tiles_of_part_[part]) add(number);
+    for (std::uint32_t number = first_[part]; number < first_[part + 1]; ++number) {
+        const double middle[2] = {0.5, 0.5};
+        AcdfRange range[2];
+        acdf_halved_ranges(acdf_row_tile(&rows_, number)->box, range);
+        const AcdfDirectionSample s = acdf_grid_position(&grid_, range, middle, 1.0);
+        out.push_back({{s.direction[0], s.direction[1], s.direction[2]}, solid_angle(number), light_[number]});
+    }
     return out;
 }
 
 bool VisibilityParts::find(const float direction[3], std::uint32_t& part) const {
-    const AcdfGrid grid = acdf_environment_grid(&local_.environment);
-    std::uint32_t square[2], node = acdf_blend_root(&local_.blend);
-    if (!acdf_local_square(&grid, direction, square)) return false;
-    while (!(node & ACDF_TILE_FLAG)) {
-        const AcdfSplit& split = local_.blend.splits[node];
-        node = split.child[square[split.place & 7u] >= split.place >> 3];
-    }
-    part = part_of_tile_[node & ~ACDF_TILE_FLAG];
+    std::uint32_t square[2];
+    if (!acdf_local_square(&grid_, direction, square)) return false;
+    const std::uint32_t tile = acdf_rows_find_tile(&rows_, square);
+    part = static_cast<std::uint32_t>(std::upper_bound(first_.begin(), first_.end(), tile) - first_.begin() - 1);
     return true;
 }
 
 void VisibilityParts::weigh(const AcdfLocalPoint& point, float* out) const {
     std::fill_n(out, count(), 0.0f);
-    if (point.what != ACDF_LOCAL_BLEND) return;
-    std::vector<AcdfMixture> mixes(cuts_.size() + 1, point.mix);
-    if (cuts_.empty()) out[0] = static_cast<float>(acdf_mixture_sum(&point.mix));
-    for (std::size_t c = 0; c < cuts_.size(); ++c) {
-        AcdfMixture sides[2] = {mixes[c], mixes[c]};
-        double sum[2];
-        acdf_mixture_split(&mixes[c], &local_.blend, cuts_[c].split, sides, sum);
-        for (std::size_t k = 0; k < 2; ++k) {
-            const std::uint32_t child = cuts_[c].child[k];
-            if (child & part) out[child & ~part] = static_cast<float>(sum[k]);
-            else mixes[child] = sides[k];
-        }
-    }
-    const AcdfScaledNormal normal = acdf_local_scaled_normal(&point);
-    for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
-        out[box_count_ + k] = static_cast<float>(acdf_bright_tile_weight(&local_.bright_tiles[k], &normal));
-}
-
-std::vector<std::array<double, 2>> VisibilityParts::sides(const double* amount) const {
-    std::vector<std::array<double, 2>> out(cuts_.size());
-    for (std::size_t c = cuts_.size(); c-- > 0;)
-        for (std::size_t k = 0; k < 2; ++k) {
-            const std::uint32_t child = cuts_[c].child[k];
-            out[c][k] = child & part ? amount[child & ~part] : out[child][0] + out[child][1];
-        }
-    return out;
+    if (point.what != ACDF_LOCAL_ROWS) return;
+    for (std::size_t p = 0; p < count(); ++p)
+        out[p] = static_cast<float>(point.sum * 0x1p-52 * acdf_rows_mass(&point.by.rows, first_[p], first_[p + 1]));
 }
 
 } // namespace acdf::compress

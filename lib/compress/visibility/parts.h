@@ -1,4 +1,4 @@
-// The parts of the sphere that visibility cells weigh: boxes of tiles, and bright tiles.
+// The parts of the sphere that visibility cells weigh.
 #pragma once
 
 #include <acdf/local.h>
@@ -9,24 +9,28 @@
 
 namespace acdf::compress {
 
-/// A local environment with tiles, cut where positions may see one side and not the other. Parts are numbered in
-/// the order of a traversal; behind them come the bright tiles.
+/// The tiles of a local environment on one tree of halvings, cut where positions may see one side and not the
+/// other. Parts are numbered in the order of the tree: each has the tiles from its first to that of the next.
 class VisibilityParts {
 public:
     static constexpr std::uint32_t directions = 64; ///< of a part: where its light comes from
 
-    /// Cuts at `columns` splits at most: those above the boxes of most light, and of most room for an edge.
-    /// `local` must outlive this.
+    /// Cuts at most at `columns` tiles: so that parts have as much light, and room for an edge, as others.
+    /// `local`, which has rows of halvings, must outlive this.
     VisibilityParts(const AcdfLocal& local, std::uint32_t bins, std::uint32_t columns);
-    /// Cuts as often where most of `loss` lies, of which a part of `coarse` has so much. `coarse` may go.
-    VisibilityParts(const VisibilityParts& coarse, const std::vector<double>& loss);
+    /// Cuts as often where most of `loss` lies, and orders columns by `light`, of which a part of `coarse` has so
+    /// much. `coarse` may go.
+    VisibilityParts(const VisibilityParts& coarse, const std::vector<double>& loss,
+                    const std::vector<double>& light);
 
     const AcdfLocal& local() const { return local_; }
-    std::size_t boxes() const { return box_count_; }
-    std::size_t count() const { return box_count_ + local_.bright_tile_count; }
-    /// One a split of tiles: its column, or ACDF_NO_COLUMN.
-    const std::vector<std::uint16_t>& columns() const { return columns_; }
-    std::uint32_t column_count() const { return static_cast<std::uint32_t>(cuts_.size()); }
+    std::size_t count() const { return first_.size() - 1; }
+    /// Where tiles are parted. The more light a part has, the fewer columns lead to it: what the sun adds to the
+    /// light of a side must not count where it does not shine.
+    const std::vector<AcdfColumn>& columns() const { return columns_; }
+    /// The part that begins at the tile of each column.
+    const std::vector<std::uint32_t>& part_of_column() const { return part_of_column_; }
+    std::uint32_t column_count() const { return static_cast<std::uint32_t>(count() - 1); }
 
     /// What of its light a normal gives to each part, by the stored rows; the sum is its irradiance over `total`.
     void weigh(const AcdfLocalPoint& point, float* out) const;
@@ -41,32 +45,22 @@ public:
     const std::array<float, 3>& direction(std::size_t part, std::uint32_t index) const {
         return directions_[part * directions + index % directions];
     }
-    /// For each column what falls into its two sides, of amounts for each part.
-    std::vector<std::array<double, 2>> sides(const double* amount) const;
 
 private:
-    /// A split that is a column. A child is another cut, or `part` | number of a part.
-    static constexpr std::uint32_t part = 0x80000000u;
-    struct Cut {
-        std::uint32_t split = 0;
-        std::uint32_t child[2] = {};
-    };
     std::vector<double> mean_tiles(std::uint32_t bins) const;
-    std::vector<double> mass_below(const std::vector<double>& tiles) const;
-    void cut(const std::vector<double>& worth, std::uint32_t columns);
-    void choose(const std::vector<double>& worth, std::uint32_t columns);
-    std::uint32_t number(std::uint32_t node);
+    void cut(const std::vector<double>& worth, const std::vector<double>& light, std::uint32_t columns);
+    void order(const std::vector<double>& before, std::uint32_t first, std::uint32_t end, std::uint32_t depth);
     void aim();
     std::array<float, 3> place(std::uint32_t tile, double u0, double u1) const;
+    double solid_angle(std::uint32_t tile) const;
 
     const AcdfLocal& local_;
-    std::vector<double> light_;    ///< of the tiles
-    std::vector<AcdfRange> boxes_; ///< two a tile
-    std::vector<std::vector<std::uint32_t>> tiles_of_part_;
-    std::vector<std::uint32_t> part_of_tile_;
-    std::size_t box_count_ = 0;
-    std::vector<std::uint16_t> columns_;
-    std::vector<Cut> cuts_; ///< in preorder
+    const AcdfNormalRows& rows_;
+    const AcdfGrid grid_;
+    std::vector<double> light_;        ///< of the tiles
+    std::vector<std::uint32_t> first_; ///< tile of each part, and how many tiles there are
+    std::vector<AcdfColumn> columns_;
+    std::vector<std::uint32_t> part_of_column_;
     std::vector<std::array<float, 3>> directions_;
 };
 

@@ -93,7 +93,7 @@ private:
                      std::uint32_t count) const {
         AcdfLocalPoint row;
         acdf_local_at(&local_, point.normal.data(), &row);
-        if (row.what != ACDF_LOCAL_BLEND) return 0.0f;
+        if (row.what != ACDF_LOCAL_ROWS) return 0.0f;
         std::uint32_t arrives = 0;
         for (std::uint32_t r = 0; r < kRays; ++r) {
             const AcdfDirectionSample s = acdf_local_sample_at(&local_, &row, spread(kRays * i + r, 0, kSteps[0]),

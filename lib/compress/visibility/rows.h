@@ -21,7 +21,7 @@ public:
     template <class Visit>
     void for_each(const VisibilityPoint& point, const Visit& visit) const {
         AcdfVisibilityMixture mix;
-        acdf_visibility_at(&table_, 1, point.position.data(), point.normal.data(), &mix);
+        acdf_visibility_at(&table_, point.position.data(), point.normal.data(), &mix);
         for (int k = 0; k < mix.count; ++k)
             visit(static_cast<std::uint32_t>(mix.row[k] - rows_.data()), mix.weight[k]);
     }

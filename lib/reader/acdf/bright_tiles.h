@@ -92,33 +92,10 @@ ACDF_INLINE void acdf_store_weights(AcdfTwoWeights weights, double out[2]) {
 }
 #endif
 
-/* What the position of a point sees, as acdf_mixture_visibility has it. */
-ACDF_FN double acdf_local_visibility(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t index) {
-    const AcdfLocalPlace* place = &point->by.place;
-    double sum = 0.0;
-    uint32_t i;
-    for (i = 0; i < point->cells; ++i)
-        sum += place->weight[i] *
-               acdf_visibility_of_code(acdf_visibility_row(&local->visibility, place->row[i])[index]);
-    return sum;
-}
-
-/* The visibility cells of a point, but for their rows. */
-ACDF_INLINE void acdf_local_numbers_of_cells(const AcdfLocalPoint* point, AcdfVisibilityMixture* out) {
-    out->count = point->cells;
-    memcpy(out->number, point->by.place.row, sizeof out->number);
-    memcpy(out->weight, point->by.place.weight, sizeof out->weight);
-}
-ACDF_INLINE void acdf_local_cells(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfVisibilityMixture* out) {
-    acdf_local_numbers_of_cells(point, out);
-    acdf_visibility_open(&local->visibility, local->blend.tiles->tile_count, out);
-}
-
-/* The weight of bright tile `k`, times the share of it that the point's position sees. */
+/* The weight of bright tile `k`. */
 ACDF_FN double acdf_local_bright_tile_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
     const AcdfScaledNormal at = acdf_local_scaled_normal(point);
-    const double weight = acdf_bright_tile_weight(&local->bright_tiles[k], &at);
-    return point->cells > 0 ? weight * acdf_local_visibility(local, point, 1 + k) : weight;
+    return acdf_bright_tile_weight(&local->bright_tiles[k], &at);
 }
 
 /* The pairs of bright tiles that a normal may see, a bit each; `facet`: its own, or null. */

@@ -14,23 +14,18 @@
 extern "C" {
 #endif
 
-/* Samples a tile of a mixture below a node as the position sees it. */
-ACDF_FN uint32_t acdf_local_sample_visible(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                           const AcdfMixture* mix, uint32_t node, double* u, AcdfRange* range,
-                                           double* probability) {
+/* Samples by rows of halvings; u in [0, 1]. */
+ACDF_INLINE AcdfDirectionSample acdf_local_rows_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                       const AcdfGrid* grid, double u[2]) {
+    const AcdfHalvedTree* tree = local->environment.halved;
     AcdfVisibilityMixture cells;
-    acdf_local_cells(local, point, &cells);
-    return acdf_visibility_sample_below(&local->visibility, &local->blend, mix, &cells, node, u, range,
-                                        probability);
-}
-
-/* Samples a tile of the mixture: by the traversal for the normal alone, or for normal and position. */
-ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
-                                        AcdfRange* range, double* probability) {
-    if (point->cells > 0)
-        return acdf_local_sample_visible(local, point, &point->mix, acdf_blend_root(&local->blend), u, range,
-                                         probability);
-    return acdf_blend_sample_tile(&local->blend, &point->mix, u, range, probability);
+    AcdfVisibleRows in;
+    const AcdfTopTile* tile;
+    double share;
+    if (point->cells == 0) return acdf_rows_sample(local->rows_of_normals, tree, grid, &point->by.rows, u);
+    in = acdf_local_visible_rows(local, point, &cells);
+    tile = acdf_visible_sample_tile(&in, u, &share);
+    return acdf_rows_direction(tree, grid, tile, share, u);
 }
 
 /* What random numbers of bright tiles and mixture are of all that the mixture gives. */
@@ -74,7 +69,7 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
                                        AcdfRange* range) {
     double probability;
     uint32_t tile;
-    const int tabled = acdf_local_tabled(local, point) && acdf_local_samples_mixture(point, u[0]);
+    const int tabled = acdf_local_tabled(local) && acdf_local_samples_mixture(point, u[0]);
     const AcdfBrightTile* light = tabled ? 0 : acdf_local_sample_bright_tile(local, point, u, &probability);
     if (light) {
         acdf_light_range(light, range);
@@ -82,7 +77,7 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
         tile = light->tile;
     } else {
         tile = tabled ? acdf_local_table_tile(local, point, u, range, &probability)
-                      : acdf_local_sample_tile(local, point, u, range, &probability);
+                      : acdf_blend_sample_tile(&local->blend, &point->mix, u, range, &probability);
         probability = acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * probability);
     }
     return acdf_local_sample_inside(local, tile, probability, u, range);
@@ -123,8 +118,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     AcdfRange range[2];
     double p;
     if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_sample(local, point, u);
-    if (point->what == ACDF_LOCAL_ROWS)
-        return acdf_rows_sample(local->rows_of_normals, local->environment.halved, &grid, &point->by.rows, u);
+    if (point->what == ACDF_LOCAL_ROWS) return acdf_local_rows_sample(local, point, &grid, u);
     if (local->environment.halved) return acdf_environment_halved_sample(&local->environment, u[0], u[1]);
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     p = point->what == ACDF_LOCAL_BLEND
@@ -138,7 +132,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
  * direction as it was rounded. */
 ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_portal_sample(const AcdfLocal* local,
                                                                  const AcdfLocalPoint* point, double* u) {
-    const AcdfVisiblePortals* portals = &point->by.place.portals;
+    const AcdfVisiblePortals* portals = &point->place.portals;
     AcdfVisibilityMixture cells;
     AcdfPortalEye eye;
     AcdfDirectionSample out;

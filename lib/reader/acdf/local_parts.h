@@ -82,13 +82,13 @@ typedef struct AcdfLocalPoint {
     AcdfMixture mix;           /* of the blend; the weights are those that reach the position */
     union {                    /* what serves it has one of these */
         uint32_t root;         /* ACDF_LOCAL_TREE */
-        AcdfTabledRows tabled; /* ACDF_LOCAL_BLEND without a position */
-        AcdfLocalPlace place;  /* ACDF_LOCAL_BLEND in visibility cells */
+        AcdfTabledRows tabled; /* ACDF_LOCAL_BLEND */
         AcdfFastPoint fast;    /* ACDF_LOCAL_FAST */
         AcdfRowMixture rows;   /* ACDF_LOCAL_ROWS */
     } by;
+    AcdfLocalPlace place; /* of ACDF_LOCAL_ROWS in visibility cells */
 } AcdfLocalPoint;
-ACDF_STATIC_ASSERT(sizeof(AcdfLocalPoint) <= 256); /* renderers keep many */
+ACDF_STATIC_ASSERT(sizeof(AcdfLocalPoint) <= 384); /* renderers keep many */
 
 #ifdef __cplusplus
 }

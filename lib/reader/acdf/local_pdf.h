@@ -9,10 +9,27 @@
 extern "C" {
 #endif
 
-/* Whether runtime tables know the tiles as a point sees them. */
-ACDF_INLINE int acdf_local_tabled(const AcdfLocal* local, const AcdfLocalPoint* point) {
-    return local->tables && point->cells == 0;
+/* What of all samples at a point of rows of halvings a tile has. */
+ACDF_INLINE double acdf_local_row_share(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile) {
+    AcdfVisibilityMixture cells;
+    AcdfVisibleRows in;
+    if (point->cells == 0) return acdf_rows_mass(&point->by.rows, tile, tile + 1u) * 0x1p-52;
+    in = acdf_local_visible_rows(local, point, &cells);
+    return acdf_visible_share(&in, tile);
 }
+
+/* The pdf of what rows of halvings sample. */
+ACDF_INLINE float acdf_local_rows_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfGrid* grid,
+                                      const AcdfRowSpot* given, const float direction[3]) {
+    AcdfRowSpot spot = *given;
+    AcdfRowCell cell;
+    if (!acdf_rows_locate(local->rows_of_normals, local->environment.halved, grid, &spot, direction, &cell))
+        return 0.0f;
+    return acdf_float_pdf(acdf_local_row_share(local, point, spot.tile) * cell.share * cell.scale);
+}
+
+/* Whether runtime tables know the tiles. */
+ACDF_INLINE int acdf_local_tabled(const AcdfLocal* local) { return local->tables != 0; }
 
 /* Where the curves of a tile begin; ACDF_NO_ROOT: it is a cell. */
 ACDF_INLINE uint32_t acdf_local_tile_root(const AcdfLocal* local, uint32_t tile) {
@@ -72,27 +89,13 @@ ACDF_INLINE AcdfLocalSpot acdf_local_spot(const AcdfLocal* local, const AcdfLoca
     return out;
 }
 
-/* Finds the tile of a square in a mixture below a node as the position sees it. */
-ACDF_FN uint32_t acdf_local_find_visible(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                         const AcdfMixture* mix, uint32_t node, const uint32_t* square,
-                                         AcdfRange* range, double* probability) {
-    AcdfVisibilityMixture cells;
-    acdf_local_cells(local, point, &cells);
-    return acdf_visibility_find_below(&local->visibility, &local->blend, mix, &cells, node, square, range,
-                                      probability);
-}
-
 /* The cell of a square in the mixture of bright tiles and rows, which becomes `range`, as acdf_tree_find does.
  * Returns its probability, 0 where no sample can fall. */
 ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfLocalSpot* spot,
                                      AcdfRange* range) {
     double probability;
     uint32_t tile = spot->tile;
-    if (acdf_local_tabled(local, point))
-        probability = acdf_local_found_tile(local, point, &point->mix, tile, 0, range);
-    else if (point->cells > 0)
-        tile = acdf_local_find_visible(local, point, &point->mix, acdf_blend_root(&local->blend), spot->square,
-                                       range, &probability);
+    if (acdf_local_tabled(local)) probability = acdf_local_found_tile(local, point, &point->mix, tile, 0, range);
     else tile = acdf_blend_find_tile(&local->blend, &point->mix, spot->square, range, 0, &probability);
     probability = acdf_local_tile_probability(local, point, tile, probability);
     return acdf_local_find_inside(local, tile, probability, spot->square, range);
@@ -172,10 +175,12 @@ ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint
     acdf_sphere_ranges(env->columns, env->rows, range);
     if (point->what == ACDF_LOCAL_NOTHING) return 0.0;
     if (point->what == ACDF_LOCAL_ROWS) {
-        AcdfSpan box[2];
-        const double p = acdf_rows_find(local->rows_of_normals, env->halved, &point->by.rows, square, box);
-        acdf_halved_ranges(box, range);
-        return p;
+        const AcdfGrid grid = acdf_environment_grid(env);
+        const uint32_t tile = acdf_rows_find_tile(local->rows_of_normals, square);
+        const AcdfRowCell cell =
+            acdf_rows_find_cell(env->halved, &grid, acdf_row_tile(local->rows_of_normals, tile), square);
+        acdf_halved_ranges(cell.box, range);
+        return acdf_local_row_share(local, point, tile) * cell.share;
     }
     if (env->halved) {
         AcdfSpan steps[2];
@@ -189,7 +194,7 @@ ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint
     }
     spot.square[0] = square[0];
     spot.square[1] = square[1];
-    if (acdf_local_tabled(local, point))
+    if (acdf_local_tabled(local))
         spot.tile = acdf_tile_at(acdf_local_words(local->tables), &local->tables->tiles, square);
     return acdf_local_blend_find(local, point, &spot, range);
 }
@@ -202,12 +207,11 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
     if (point->what == ACDF_LOCAL_ROWS) {
         const AcdfGrid grid = acdf_environment_grid(&local->environment);
         const AcdfRowSpot at = acdf_rows_spot(local->rows_of_normals, &grid, direction);
-        return acdf_rows_pdf(local->rows_of_normals, local->environment.halved, &grid, &point->by.rows, &at,
-                             direction);
+        return acdf_local_rows_pdf(local, point, &grid, &at, direction);
     }
     if (local->environment.halved) return acdf_environment_halved_pdf(&local->environment, direction);
-    spot = acdf_local_spot(
-        local, point->what == ACDF_LOCAL_BLEND && acdf_local_tabled(local, point) ? local->tables : 0, direction);
+    spot = acdf_local_spot(local, point->what == ACDF_LOCAL_BLEND && acdf_local_tabled(local) ? local->tables : 0,
+                           direction);
     return acdf_local_spot_pdf(local, point, direction, &spot);
 }
 
@@ -215,8 +219,7 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
 ACDF_INLINE void acdf_local_eye(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfVisibilityMixture* cells,
                                 AcdfPortalEye* out) {
     acdf_local_numbers_of_cells(point, cells);
-    acdf_portal_eye(&local->portals, &local->visibility, cells, point->by.place.portals.position, point->surface,
-                    out);
+    acdf_portal_eye(&local->portals, &local->visibility, cells, point->place.portals.position, point->surface, out);
 }
 
 /* Of rows and portals together; `row`: that of rows. */
@@ -225,7 +228,7 @@ ACDF_OUTLINE_ON_CPU float acdf_local_portals_pdf(const AcdfLocal* local, const A
     AcdfVisibilityMixture cells;
     AcdfPortalEye eye;
     acdf_local_eye(local, point, &cells, &eye);
-    return acdf_visible_portals_pdf(&eye, &point->by.place.portals, direction, row);
+    return acdf_visible_portals_pdf(&eye, &point->place.portals, direction, row);
 }
 
 /* The part of the pdf that follows the light: that of rows, and of portals where a position sees any. */
@@ -321,9 +324,8 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_rows_pdf(const AcdfLocal* local, const 
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
     if (point.what != ACDF_LOCAL_ROWS) return acdf_local_pdf_at(local, &point, direction);
-    return acdf_local_combined_pdf(
-        local, &point, direction,
-        acdf_rows_pdf(local->rows_of_normals, local->environment.halved, &grid, &point.by.rows, &spot, direction));
+    return acdf_local_combined_pdf(local, &point, direction,
+                                   acdf_local_rows_pdf(local, &point, &grid, &spot, direction));
 }
 /* Pdf per steradian with which acdf_local_sample samples `direction` (unit) for that normal. */
 ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {

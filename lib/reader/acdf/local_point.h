@@ -79,17 +79,15 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
     return 1;
 }
 
-/* Weights bright tiles and mixture together; `visible`: the visible share of each bright tile, null: all. */
-ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, AcdfLocalPoint* out) {
+/* Weights bright tiles and mixture together. */
+ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, AcdfLocalPoint* out) {
     const AcdfFacet* facet = out->by.tabled.facet;
     const AcdfScaledNormal normal = acdf_local_scaled_normal(out);
     uint32_t k;
-    if (facet && !visible) out->bright_tiles = acdf_facet_bright_tiles(local, facet, &normal);
+    if (facet) out->bright_tiles = acdf_facet_bright_tiles(local, facet, &normal);
     else
-        for (k = 0; k < local->bright_tile_count; ++k) {
-            const double weight = acdf_bright_tile_weight(&local->bright_tiles[k], &normal);
-            out->bright_tiles += visible ? weight * visible[k] : weight;
-        }
+        for (k = 0; k < local->bright_tile_count; ++k)
+            out->bright_tiles += acdf_bright_tile_weight(&local->bright_tiles[k], &normal);
     out->sum = out->bright_tiles + acdf_mixture_sum(&out->mix);
     if (out->sum > 0.0) out->what = ACDF_LOCAL_BLEND;
 }
@@ -128,41 +126,45 @@ ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLo
         if (acdf_local_begin_fast(local, normal, out)) acdf_local_fast_sum(local, out);
         return;
     }
-    if (acdf_local_begin(local, normal, out)) acdf_local_sum(local, 0, out);
-}
-
-/* Keeps the visibility cells of a point. */
-ACDF_INLINE void acdf_local_keep_cells(const AcdfVisibilityMixture* cells, AcdfLocalPoint* out) {
-    out->cells = (uint8_t)cells->count;
-    memcpy(out->by.place.row, cells->number, sizeof cells->number);
-    memcpy(out->by.place.weight, cells->weight, sizeof cells->weight);
+    if (acdf_local_begin(local, normal, out)) acdf_local_sum(local, out);
 }
 
 /* Finds what serves a normal at a position of the scene by rows alone, and the visibility cells of that. */
 ACDF_FN void acdf_local_in_cells(const AcdfLocal* local, const float position[3], const float normal[3],
                                  AcdfVisibilityMixture* cells, AcdfLocalPoint* out) {
-    double visible, of_light[ACDF_MAX_BRIGHT_TILES];
     float surface[3];
-    int i;
-    cells->count = 0;
-    if (local->fast.grid || local->rows_of_normals) { /* which know no visibility cells */
-        acdf_local_at(local, normal, out);
-        return;
-    }
     /* First of all: rows of visibility cells are far away, and come while the normal's are found. */
     acdf_as_given(normal, surface);
-    if (local->blend.tiles)
-        acdf_visibility_at(&local->visibility, local->blend.tiles->tile_count, position, surface, cells);
-    if (!acdf_local_begin(local, normal, out)) return;
-    if (cells->count == 0) {
-        acdf_local_sum(local, 0, out);
-        return;
-    }
-    visible = acdf_mixture_visibility(cells, 0);
-    for (i = 0; i < out->mix.count; ++i) out->mix.weight[i] *= visible;
-    acdf_visibility_of_tiles(cells, local->bright_tile_count, of_light);
-    acdf_local_sum(local, of_light, out);
-    if (out->sum > 0.0) acdf_local_keep_cells(cells, out);
+    acdf_visibility_at(&local->visibility, position, surface, cells);
+    acdf_local_at(local, normal, out);
+    if (cells->count == 0 || out->what != ACDF_LOCAL_ROWS) return;
+    out->sum *= acdf_mixture_visibility(cells);
+    out->cells = (uint8_t)cells->count;
+    memcpy(out->place.row, cells->number, sizeof cells->number);
+    memcpy(out->place.weight, cells->weight, sizeof cells->weight);
+}
+
+/* The visibility cells of a point, but for their rows; and with them. */
+ACDF_INLINE void acdf_local_numbers_of_cells(const AcdfLocalPoint* point, AcdfVisibilityMixture* out) {
+    out->count = point->cells;
+    memcpy(out->number, point->place.row, sizeof out->number);
+    memcpy(out->weight, point->place.weight, sizeof out->weight);
+}
+ACDF_INLINE void acdf_local_cells(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfVisibilityMixture* out) {
+    acdf_local_numbers_of_cells(point, out);
+    acdf_visibility_open(&local->visibility, out);
+}
+
+/* The rows of a point as its position sees them; `cells` become its own. */
+ACDF_INLINE AcdfVisibleRows acdf_local_visible_rows(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                    AcdfVisibilityMixture* cells) {
+    AcdfVisibleRows out;
+    acdf_local_cells(local, point, cells);
+    out.rows = local->rows_of_normals;
+    out.mix = &point->by.rows;
+    out.table = &local->visibility;
+    out.cells = cells;
+    return out;
 }
 
 /* Finds what serves a normal at a position of the scene by rows alone, whatever comes through portals. */
@@ -180,7 +182,7 @@ ACDF_FN void acdf_local_at_position(const AcdfLocal* local, const float position
     acdf_local_in_cells(local, position, normal, &cells, out);
     if (local->portals.header && out->cells > 0)
         out->portals = (uint8_t)acdf_visible_portals_at(&local->portals, &local->visibility, &cells, position,
-                                                        out->surface, &out->by.place.portals);
+                                                        out->surface, &out->place.portals);
 }
 
 /* Whether u0 in [0, 1] samples from the mixture, not a bright tile. */

@@ -68,7 +68,7 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
     ACDF_MOVE(AcdfPartner, local->partner);
     ACDF_MOVE(AcdfVisibility, local->visibility.header);
     ACDF_MOVE(AcdfVisibilitySplit, local->visibility.splits);
-    ACDF_MOVE(uint16_t, local->visibility.columns);
+    ACDF_MOVE(AcdfColumn, local->visibility.columns);
     ACDF_MOVE(uint16_t, local->visibility.set_of_row);
     ACDF_MOVE(uint8_t, local->visibility.rows);
     ACDF_MOVE(AcdfPortals, local->portals.header);

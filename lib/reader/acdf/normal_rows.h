@@ -40,6 +40,7 @@ typedef struct AcdfNormalRows {
     uint32_t bits;         /* the lookup grid has squares of 2^-bits of each axis, in rows of axis 0; 0: none */
     uint32_t starts;       /* uint32: of each square the deepest split that holds it, or ACDF_TOP_TILE | a tile */
     uint32_t position_scale[2]; /* step * scale / 2^32 is the square of a grid step */
+    uint32_t odds;              /* double[256]: what codes of visibility cells stand for; 0: there are none */
 } AcdfNormalRows;
 
 /* Rows, and what of all samples each has: whole numbers that add up to ACDF_WEIGHTS. */
@@ -150,37 +151,39 @@ ACDF_INLINE uint32_t acdf_rows_find_tile(const AcdfNormalRows* rows, const uint3
 
 /* ---- cells in a tile -------------------------------------------------------------------------------------- */
 
-/* The cell of a tile that u[2] lead to; u is rescaled to [0, 1] in it. Returns its pdf where the tile has that
- * probability, sr^-1. */
-ACDF_INLINE double acdf_rows_sample_inside(const AcdfHalvedTree* tree, const AcdfGrid* grid,
-                                           const AcdfTopTile* tile, double probability, double u[2],
-                                           AcdfSpan box[2]) {
-    double share;
-    box[0] = tile->box[0];
-    box[1] = tile->box[1];
-    if (tile->node == ACDF_LEAF) return probability * tile->scale;
-    share = acdf_tile_descend(acdf_halvings_nodes(tree), tile, u, box);
-    return probability * share * acdf_box_scale(acdf_halved_heights(tree), grid, box);
+/* A cell of a tile: what of the tile's samples it has, and its pdf over its probability, sr^-1. */
+typedef struct AcdfRowCell {
+    double share, scale;
+    AcdfSpan box[2];
+} AcdfRowCell;
+
+/* The cell of a tile that u[2] lead to; u is rescaled to [0, 1] in it. */
+ACDF_INLINE AcdfRowCell acdf_rows_sample_cell(const AcdfHalvedTree* tree, const AcdfGrid* grid,
+                                              const AcdfTopTile* tile, double u[2]) {
+    AcdfRowCell out = {1.0, tile->scale, {tile->box[0], tile->box[1]}};
+    if (tile->node == ACDF_LEAF) return out;
+    out.share = acdf_tile_descend(acdf_halvings_nodes(tree), tile, u, out.box);
+    out.scale = acdf_box_scale(acdf_halved_heights(tree), grid, out.box);
+    return out;
 }
 
-/* The same of the cell that holds a grid step of each axis. */
-ACDF_INLINE double acdf_rows_find_inside(const AcdfHalvedTree* tree, const AcdfGrid* grid, const AcdfTopTile* tile,
-                                         double probability, const uint32_t position[2], AcdfSpan box[2]) {
-    double share;
-    box[0] = tile->box[0];
-    box[1] = tile->box[1];
-    if (tile->node == ACDF_LEAF) return probability * tile->scale;
-    share = acdf_tile_find(acdf_halvings_nodes(tree), tile, position, box);
-    return probability * share * acdf_box_scale(acdf_halved_heights(tree), grid, box);
+/* The one that holds a grid step of each axis. */
+ACDF_INLINE AcdfRowCell acdf_rows_find_cell(const AcdfHalvedTree* tree, const AcdfGrid* grid,
+                                            const AcdfTopTile* tile, const uint32_t position[2]) {
+    AcdfRowCell out = {1.0, tile->scale, {tile->box[0], tile->box[1]}};
+    if (tile->node == ACDF_LEAF) return out;
+    out.share = acdf_tile_find(acdf_halvings_nodes(tree), tile, position, out.box);
+    out.scale = acdf_box_scale(acdf_halved_heights(tree), grid, out.box);
+    return out;
 }
 
 /* A direction that u in [0, 1] pick in a tile of some probability. */
 ACDF_INLINE AcdfDirectionSample acdf_rows_direction(const AcdfHalvedTree* tree, const AcdfGrid* grid,
                                                     const AcdfTopTile* tile, double probability, double u[2]) {
     AcdfDirectionSample out;
-    AcdfSpan box[2];
-    out.pdf = acdf_float_pdf(acdf_rows_sample_inside(tree, grid, tile, probability, u, box));
-    acdf_box_direction(acdf_halved_heights(tree), grid, box, u, out.direction);
+    const AcdfRowCell cell = acdf_rows_sample_cell(tree, grid, tile, u);
+    out.pdf = acdf_float_pdf(probability * cell.share * cell.scale);
+    acdf_box_direction(acdf_halved_heights(tree), grid, cell.box, u, out.direction);
     return out;
 }
 
@@ -219,27 +222,19 @@ ACDF_INLINE AcdfRowSpot acdf_rows_spot(const AcdfNormalRows* rows, const AcdfGri
     return spot;
 }
 
-/* The pdf of the cell of a tile that holds a grid step of each axis, sr^-1. */
-ACDF_INLINE double acdf_rows_cell(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfGrid* grid,
-                                  const AcdfRowMixture* mix, uint32_t tile, const uint32_t position[2],
-                                  AcdfSpan box[2]) {
-    return acdf_rows_find_inside(tree, grid, acdf_row_tile(rows, tile),
-                                 acdf_rows_mass(mix, tile, tile + 1u) * 0x1p-52, position, box);
-}
-
-/* The pdf of a direction, sr^-1: exactly that of acdf_rows_sample where that returned it. */
-ACDF_INLINE float acdf_rows_pdf(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfGrid* grid,
-                                const AcdfRowMixture* mix, const AcdfRowSpot* spot, const float direction[3]) {
-    AcdfSpan box[2];
-    uint32_t square[2];
-    double at[2], p;
-    if (!spot->valid) return 0.0f;
-    p = acdf_rows_cell(rows, tree, grid, mix, spot->tile, spot->square, box);
-    if (!spot->nearly ||
-        acdf_is_surely_in(spot->position, spot->error, box[0].end[0], box[0].end[1], box[1].end[0], box[1].end[1]))
-        return acdf_float_pdf(p);
-    if (!acdf_grid_square(grid, direction, square, at)) return 0.0f;
-    return acdf_float_pdf(acdf_rows_cell(rows, tree, grid, mix, acdf_rows_find_tile(rows, square), square, box));
+/* The cell of a direction, and its tile: what floats found, where that is sure. 0: it is no direction. */
+ACDF_INLINE int acdf_rows_locate(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfGrid* grid,
+                                 AcdfRowSpot* spot, const float direction[3], AcdfRowCell* cell) {
+    double at[2];
+    if (!spot->valid) return 0;
+    *cell = acdf_rows_find_cell(tree, grid, acdf_row_tile(rows, spot->tile), spot->square);
+    if (!spot->nearly || acdf_is_surely_in(spot->position, spot->error, cell->box[0].end[0], cell->box[0].end[1],
+                                           cell->box[1].end[0], cell->box[1].end[1]))
+        return 1;
+    if (!acdf_grid_square(grid, direction, spot->square, at)) return 0;
+    spot->tile = acdf_rows_find_tile(rows, spot->square);
+    *cell = acdf_rows_find_cell(tree, grid, acdf_row_tile(rows, spot->tile), spot->square);
+    return 1;
 }
 
 /* The cell that u in [0, 1] lead to, and its probability; they are rescaled to [0, 1] in it. */

@@ -1,15 +1,15 @@
-/* Only the light that a mixture can see: one freestanding header over acdf/blend.h, valid C99, C++17 and
+/* Only the light that reaches a position: one freestanding header over acdf/normal_rows.h, valid C99, C++17 and
  * CUDA/HIP/SYCL, with the same contract (SPEC.md §12).
  *
- * Positions and normals lie in the cells of a k-d tree. A cell has a row of bytes: how much of the bright tiles, of
- * the mixture as a whole and, at each split of tiles that counts in its region (a *column*), of its two parts
- * reaches it. Those *visibilities* multiply what rows of normals give to the two parts; the products are made to
- * add up to 1 again at each split, so that the pdf is exact whatever the bytes are. Near the border of two
- * cells their visibilities are mixed, linearly, so that nothing jumps where at most four cells meet. */
+ * Positions and normals lie in the cells of a k-d tree. The tiles of the tree of halvings, in their order, are
+ * parted at *columns*, which all cells of a region have. A cell has a row of bytes: how much of all light reaches
+ * it and, at each column, how much from either side. Those multiply what rows of normals give to the sides; the
+ * products are made to add up to 1 again at each column, so that the pdf is exact whatever the bytes are. Near the
+ * border of two cells their samples are mixed, linearly, so that nothing jumps where at most four cells meet. */
 #ifndef ACDF_VISIBILITY_H
 #define ACDF_VISIBILITY_H
 
-#include <acdf/blend.h>
+#include <acdf/normal_rows.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -20,20 +20,18 @@ enum { ACDF_MAX_CELLS_MIXED = 4 };
 typedef struct AcdfVisibilityTable {
     const AcdfVisibility* header;      /* chunk PLAC; null where there is none */
     const AcdfVisibilitySplit* splits; /* behind it */
-    const uint16_t* columns;           /* sets of one a split of tiles */
+    const AcdfColumn* columns;         /* sets of them */
     const uint16_t* set_of_row;        /* null where there is but one set */
     const uint8_t* rows;
-    uint32_t bright_tile_count;
 } AcdfVisibilityTable;
 
 /* The rows of cells around a position, and their weights, whose sum is 1. None: there are no visibility cells. */
 typedef struct AcdfVisibilityMixture {
     uint32_t number[ACDF_MAX_CELLS_MIXED]; /* of the row */
     const uint8_t* row[ACDF_MAX_CELLS_MIXED];
-    const uint16_t* columns[ACDF_MAX_CELLS_MIXED]; /* of the row */
+    const AcdfColumn* columns[ACDF_MAX_CELLS_MIXED]; /* of the row */
     double weight[ACDF_MAX_CELLS_MIXED];
     int count;
-    int alike; /* all have the same columns, as cells of one region have */
 } AcdfVisibilityMixture;
 
 /* The visibility that a byte stands for: 31/32 to 2^-16, in steps of 1/16 to 1/31. Its upper half is the exponent,
@@ -47,45 +45,29 @@ ACDF_FN double acdf_visibility_of_code(uint8_t code) {
 
 /* The bytes of a row, and where those of one begin. */
 ACDF_FN size_t acdf_visibility_width(const AcdfVisibilityTable* table) {
-    return (size_t)1 + table->bright_tile_count + table->header->column_count;
+    return (size_t)1 + table->header->column_count;
 }
 ACDF_FN const uint8_t* acdf_visibility_row(const AcdfVisibilityTable* table, uint32_t number) {
     return table->rows + number * acdf_visibility_width(table);
 }
 
 /* Finds the rows of a mixture by their numbers. */
-ACDF_INLINE void acdf_visibility_open(const AcdfVisibilityTable* table, uint32_t tile_count,
-                                      AcdfVisibilityMixture* mixture) {
+ACDF_INLINE void acdf_visibility_open(const AcdfVisibilityTable* table, AcdfVisibilityMixture* mixture) {
     const size_t width = acdf_visibility_width(table);
     int i;
-    mixture->alike = 1;
     for (i = 0; i < mixture->count; ++i) {
         const uint32_t set = table->set_of_row ? table->set_of_row[mixture->number[i]] : 0;
         mixture->row[i] = table->rows + mixture->number[i] * width;
-        mixture->columns[i] = table->columns + (size_t)set * (tile_count - 1);
-        mixture->alike &= mixture->columns[i] == mixture->columns[0];
+        mixture->columns[i] = table->columns + (size_t)set * table->header->column_count;
     }
 }
 
-/* Number `index` of a row: 0 is the mixture, 1 + k bright tile k. */
-ACDF_FN double acdf_mixture_visibility(const AcdfVisibilityMixture* mixture, uint32_t index) {
+/* How much of all light arrives. */
+ACDF_FN double acdf_mixture_visibility(const AcdfVisibilityMixture* mixture) {
     double sum = 0.0;
     int i;
-    for (i = 0; i < mixture->count; ++i)
-        sum += mixture->weight[i] * acdf_visibility_of_code(mixture->row[i][index]);
+    for (i = 0; i < mixture->count; ++i) sum += mixture->weight[i] * acdf_visibility_of_code(mixture->row[i][0]);
     return sum;
-}
-
-/* Those of all bright tiles. */
-ACDF_FN void acdf_visibility_of_tiles(const AcdfVisibilityMixture* mixture, uint32_t count, double* out) {
-    uint32_t k;
-    int i;
-    for (k = 0; k < count; ++k) out[k] = 0.0;
-    for (i = 0; i < mixture->count; ++i) {
-        const uint8_t* row = mixture->row[i] + 1;
-        const double weight = mixture->weight[i];
-        for (k = 0; k < count; ++k) out[k] += weight * acdf_visibility_of_code(row[k]);
-    }
 }
 
 /* A position of the scene and a normal among the cells; 0 where it lies outside. */
@@ -108,8 +90,8 @@ ACDF_FN int acdf_visibility_coordinates(const AcdfVisibilityTable* table, const 
 /* Finds the cells around a position and a normal (of any length but 0); `out` becomes empty outside of all of them.
  * Where it is within reach of so many borders that more than four cells would be mixed, the lighter side of a
  * border is left out. */
-ACDF_FN void acdf_visibility_at(const AcdfVisibilityTable* table, uint32_t tile_count, const float position[3],
-                                const float normal[3], AcdfVisibilityMixture* out) {
+ACDF_FN void acdf_visibility_at(const AcdfVisibilityTable* table, const float position[3], const float normal[3],
+                                AcdfVisibilityMixture* out) {
     uint32_t* const node = out->number;
     double x[6];
     int i;
@@ -146,146 +128,129 @@ ACDF_FN void acdf_visibility_at(const AcdfVisibilityTable* table, uint32_t tile_
         ACDF_PREFETCH(row);
         ACDF_PREFETCH(row + acdf_visibility_width(table) / 2);
     }
-    acdf_visibility_open(table, tile_count, out);
+    acdf_visibility_open(table, out);
 }
 
-/* The odds of a split, out of 65535; below 0 where none of the cells has a column for it. */
-ACDF_INLINE double acdf_visibility_odds(const AcdfVisibilityTable* table, const uint16_t* codebook,
-                                        const AcdfVisibilityMixture* mixture, const int visibility, uint32_t node) {
-    const uint32_t first = 1 + table->bright_tile_count;
-    double odds = 0.0;
-    int i, known = 0;
-    if (mixture->alike) {
-        const uint32_t column = mixture->columns[0][node];
-        if (column == ACDF_NO_COLUMN) return -1.0;
-        for (i = 0; i < visibility; ++i)
-            odds += mixture->weight[i] * (double)codebook[mixture->row[i][first + column]];
-        return odds;
-    }
-    for (i = 0; i < visibility; ++i) {
-        const uint32_t column = mixture->columns[i][node];
-        known |= column != ACDF_NO_COLUMN;
-        odds += mixture->weight[i] *
-                (column != ACDF_NO_COLUMN ? (double)codebook[mixture->row[i][first + column]] : 32767.5);
-    }
-    return known ? odds : -1.0;
+/* ---- rows of codes as a position sees them ----------------------------------------------------------------- */
+
+/* A mixture of rows, and the cells around a position. */
+typedef struct AcdfVisibleRows {
+    const AcdfNormalRows* rows;
+    const AcdfRowMixture* mix;
+    const AcdfVisibilityTable* table;
+    const AcdfVisibilityMixture* cells; /* some */
+} AcdfVisibleRows;
+
+#define ACDF_NO_PARTS 0xFFFFFFFFu
+
+/* Tiles [first, end) of a cell, parted at `column`, or ACDF_NO_PARTS: of the mixture, out of 2^52, `below` lie
+ * before them and `mass` in them; of the cell's samples they have `share`. */
+typedef struct AcdfVisiblePart {
+    uint32_t column, first, end;
+    double below, mass, share;
+} AcdfVisiblePart;
+
+ACDF_INLINE AcdfVisiblePart acdf_visible_all(const AcdfVisibleRows* in) {
+    AcdfVisiblePart out;
+    out.column = in->table->header->column_count > 0 ? 0 : ACDF_NO_PARTS;
+    out.first = 0;
+    out.end = in->rows->splits + 1u;
+    out.below = 0.0;
+    out.mass = 0x1p52;
+    out.share = 1.0;
+    return out;
 }
 
-/* What of the weights of rows falls into the two parts of a split, times their visibility; `lower` is what of each
- * row falls into the lower one, without it. */
-ACDF_INLINE void acdf_visibility_split(const AcdfVisibilityTable* table, const AcdfBlend* blend,
-                                       const AcdfMixture* mix, const int rows, const AcdfVisibilityMixture* mixture,
-                                       const int visibility, uint32_t node, const double* weight, double* lower,
-                                       double part[2]) {
-    const uint16_t* codebook = blend->tiles->codebook;
-    const double odds = acdf_visibility_odds(table, codebook, mixture, visibility, node);
+/* Both sides of a column. */
+typedef struct AcdfVisibleSides {
+    AcdfColumn column;
+    double lower;    /* what of the mixture the lower side has */
+    double given[2]; /* what of the samples both have, to a common scale */
+} AcdfVisibleSides;
+
+ACDF_INLINE AcdfVisibleSides acdf_visible_sides(const AcdfVisibleRows* in, int cell, const AcdfVisiblePart* at) {
+    const double* of_code = ACDF_TOP_ARRAY(double, in->rows, in->rows->odds);
+    const double odds = of_code[in->cells->row[cell][1u + at->column]];
+    AcdfVisibleSides out;
+    out.column = in->cells->columns[cell][at->column];
+    out.lower = acdf_rows_sum(in->mix, in->mix->before, out.column.tile) - at->below;
+    out.given[0] = out.lower * odds;
+    out.given[1] = (at->mass - out.lower) * (1.0 - odds);
+    return out;
+}
+ACDF_INLINE void acdf_visible_enter(AcdfVisiblePart* at, const AcdfVisibleSides* sides, uint32_t upper) {
+    const uint32_t parts = sides->column.parts;
+    at->share *= sides->given[upper] / (sides->given[0] + sides->given[1]);
+    if (upper) {
+        at->below += sides->lower;
+        at->mass -= sides->lower;
+        at->first = sides->column.tile;
+        at->column = parts & 0x7FFFu ? parts & 0x7FFFu : ACDF_NO_PARTS;
+    } else {
+        at->mass = sides->lower;
+        at->end = sides->column.tile;
+        at->column = parts & 0x8000u ? ACDF_NO_PARTS : at->column + 1u;
+    }
+}
+
+/* What of the samples of a cell lies in a tile, and in those before it. */
+ACDF_INLINE double acdf_visible_in_cell(const AcdfVisibleRows* in, int cell, uint32_t tile, double* before) {
+    AcdfVisiblePart at = acdf_visible_all(in);
+    double mass;
+    *before = 0.0;
+    while (at.column != ACDF_NO_PARTS) {
+        const AcdfVisibleSides sides = acdf_visible_sides(in, cell, &at);
+        const uint32_t upper = (uint32_t)(tile >= sides.column.tile);
+        if (upper && sides.given[0] > 0.0)
+            *before += at.share * (sides.given[0] / (sides.given[0] + sides.given[1]));
+        if (!(sides.given[upper] > 0.0)) return 0.0;
+        acdf_visible_enter(&at, &sides, upper);
+    }
+    *before += at.share * (acdf_rows_mass(in->mix, at.first, tile) / at.mass);
+    mass = tile < at.end ? acdf_rows_mass(in->mix, tile, tile + 1u) : 0.0;
+    return at.share * (mass / at.mass);
+}
+
+/* What of all samples a tile has: exactly that of acdf_visible_sample_tile. */
+ACDF_INLINE double acdf_visible_share(const AcdfVisibleRows* in, uint32_t tile) {
+    double share = 0.0, before;
     int i;
-    part[0] = part[1] = 0.0;
-    for (i = 0; i < rows; ++i) {
-        part[0] += lower[i] = weight[i] * ((double)codebook[mix->row[i][node]] * (1.0 / 65535.0));
-        part[1] += weight[i] - lower[i];
-    }
-    if (odds >= 0.0) {
-        part[0] *= odds;
-        part[1] *= 65535.0 - odds;
-    }
+    for (i = 0; i < in->cells->count; ++i)
+        share += in->cells->weight[i] * acdf_visible_in_cell(in, i, tile, &before);
+    return share > 0.0 ? acdf_positive(share) : 0.0;
 }
 
-ACDF_INLINE uint32_t acdf_visibility_sample_rows(const AcdfVisibilityTable* table, const AcdfBlend* blend,
-                                                 const AcdfMixture* mix, const int rows,
-                                                 const AcdfVisibilityMixture* mixture, const int visibility,
-                                                 uint32_t node, double* u, AcdfRange* range, double* probability) {
-    double weight[ACDF_MAX_ROWS_MIXED], lower[ACDF_MAX_ROWS_MIXED], part[2], p = 1.0;
+/* What of all samples lies in the tiles before one. */
+ACDF_INLINE double acdf_visible_before(const AcdfVisibleRows* in, uint32_t tile) {
+    double share = 0.0, before;
     int i;
-    for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
-    while (!(node & ACDF_TILE_FLAG)) {
-        const AcdfSplit* split = &blend->splits[node];
-        const uint32_t axis = split->place & 7u, position = split->place >> 3;
-        double sum, x;
-        acdf_visibility_split(table, blend, mix, rows, mixture, visibility, node, weight, lower, part);
-        sum = part[0] + part[1];
-        x = u[axis] * sum;
-        if (!(x < part[0]) && part[1] > 0.0) {
-            u[axis] = acdf_unit_interval((x - part[0]) / part[1]);
-            p *= part[1] / sum;
-            for (i = 0; i < rows; ++i) weight[i] -= lower[i];
-            range[axis].low = position;
-            node = split->child[1];
-        } else {
-            u[axis] = acdf_unit_interval(x / part[0]);
-            p *= part[0] / sum;
-            for (i = 0; i < rows; ++i) weight[i] = lower[i];
-            range[axis].high = position;
-            node = split->child[0];
-        }
+    for (i = 0; i < in->cells->count; ++i) {
+        acdf_visible_in_cell(in, i, tile, &before);
+        share += in->cells->weight[i] * before;
     }
-    *probability = acdf_positive(p);
-    return node & ~ACDF_TILE_FLAG;
+    return share;
 }
 
-ACDF_INLINE uint32_t acdf_visibility_find_rows(const AcdfVisibilityTable* table, const AcdfBlend* blend,
-                                               const AcdfMixture* mix, const int rows,
-                                               const AcdfVisibilityMixture* mixture, const int visibility,
-                                               uint32_t node, const uint32_t* square, AcdfRange* range,
-                                               double* probability) {
-    double weight[ACDF_MAX_ROWS_MIXED], lower[ACDF_MAX_ROWS_MIXED], part[2], p = 1.0;
-    int i, lit = rows > 0 && acdf_mixture_sum(mix) > 0.0; /* not within a bright tile */
-    for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
-    while (!(node & ACDF_TILE_FLAG)) {
-        const AcdfSplit* split = &blend->splits[node];
-        const uint32_t axis = split->place & 7u, position = split->place >> 3;
-        const int upper = square[axis] >= position;
-        acdf_visibility_split(table, blend, mix, rows, mixture, visibility, node, weight, lower, part);
-        if (upper)
-            for (i = 0; i < rows; ++i) weight[i] -= lower[i];
-        else
-            for (i = 0; i < rows; ++i) weight[i] = lower[i];
-        if (upper) range[axis].low = position;
-        else range[axis].high = position;
-        if (part[upper] > 0.0) p *= part[upper] / (part[0] + part[1]);
-        else lit = 0;
-        node = split->child[upper];
+/* Samples a tile, and what of all samples it has: a cell by its weight, then a tile as that sees it. u in [0, 1] is
+ * rescaled to [0, 1] in the tile. */
+ACDF_INLINE const AcdfTopTile* acdf_visible_sample_tile(const AcdfVisibleRows* in, double u[2], double* share) {
+    const AcdfVisibilityMixture* cells = in->cells;
+    AcdfVisiblePart at = acdf_visible_all(in);
+    uint32_t tile;
+    int cell = 0;
+    while (cell + 1 < cells->count && !(u[0] < cells->weight[cell])) u[0] -= cells->weight[cell++];
+    u[0] = acdf_unit_interval(u[0] / cells->weight[cell]);
+    while (at.column != ACDF_NO_PARTS) {
+        const AcdfVisibleSides sides = acdf_visible_sides(in, cell, &at);
+        const double x = u[0] * (sides.given[0] + sides.given[1]);
+        const uint32_t upper = (uint32_t)(!(x < sides.given[0]) && sides.given[1] > 0.0);
+        u[0] = acdf_unit_interval(upper ? (x - sides.given[0]) / sides.given[1] : x / sides.given[0]);
+        acdf_visible_enter(&at, &sides, upper);
     }
-    *probability = lit ? acdf_positive(p) : 0.0;
-    return node & ~ACDF_TILE_FLAG;
+    tile = acdf_rows_search(in->mix, in->mix->before, at.first, at.end, &at.below, &at.mass, &u[1]);
+    *share = acdf_visible_share(in, tile);
+    return acdf_row_tile(in->rows, tile);
 }
-
-/* The traversals for as many rows of normals and of visibility as there are, each known to the compiler where that
- * is usual.
- */
-#define ACDF_VISIBILITY_WALK(rows, visibility)                                                                     \
-    if (mix->count == (rows) && mixture->count == (visibility)) return ACDF_VISIBILITY_CALL(rows, visibility)
-#define ACDF_VISIBILITY_WALKS                                                                                      \
-    ACDF_VISIBILITY_WALK(3, 1);                                                                                    \
-    ACDF_VISIBILITY_WALK(3, 2);                                                                                    \
-    ACDF_VISIBILITY_WALK(3, 4);                                                                                    \
-    ACDF_VISIBILITY_WALK(1, 1);                                                                                    \
-    ACDF_VISIBILITY_WALK(1, 2);                                                                                    \
-    ACDF_VISIBILITY_WALK(1, 4);                                                                                    \
-    return ACDF_VISIBILITY_CALL(mix->count, mixture->count)
-
-/* Samples a tile, as acdf_blend_sample_below does, of a mixture as a mixture sees it (which has a row at least). */
-ACDF_FN uint32_t acdf_visibility_sample_below(const AcdfVisibilityTable* table, const AcdfBlend* blend,
-                                              const AcdfMixture* mix, const AcdfVisibilityMixture* mixture,
-                                              uint32_t node, double* u, AcdfRange* range, double* probability) {
-#define ACDF_VISIBILITY_CALL(rows, visibility)                                                                     \
-    acdf_visibility_sample_rows(table, blend, mix, rows, mixture, visibility, node, u, range, probability)
-    ACDF_VISIBILITY_WALKS;
-#undef ACDF_VISIBILITY_CALL
-}
-
-/* Finds the tile of a grid square, as acdf_blend_find_below does. */
-ACDF_FN uint32_t acdf_visibility_find_below(const AcdfVisibilityTable* table, const AcdfBlend* blend,
-                                            const AcdfMixture* mix, const AcdfVisibilityMixture* mixture,
-                                            uint32_t node, const uint32_t* square, AcdfRange* range,
-                                            double* probability) {
-#define ACDF_VISIBILITY_CALL(rows, visibility)                                                                     \
-    acdf_visibility_find_rows(table, blend, mix, rows, mixture, visibility, node, square, range, probability)
-    ACDF_VISIBILITY_WALKS;
-#undef ACDF_VISIBILITY_CALL
-}
-#undef ACDF_VISIBILITY_WALK
-#undef ACDF_VISIBILITY_WALKS
 
 #ifdef __cplusplus
 }

@@ -8,11 +8,7 @@ namespace {
 // Beside DESC and TILE, what a local environment has.
 void check_local(const Payloads& payloads, const TileBoxes& boxes, Report& report, Parts& parts) {
     check_local_kind(payloads.of[chunk_description], payloads.of[chunk_local], boxes, report, parts);
-    if (boxes.fast) return;
-    if (payloads.of[chunk_visibility].data && !report.stopped())
-        check_visibility(payloads.of[chunk_visibility], report, parts);
-    if (payloads.of[chunk_portals].data && !report.stopped())
-        check_portals(payloads.of[chunk_portals], report, parts);
+    if (!report.stopped()) check_seen(payloads, report, parts);
 }
 
 } // namespace

@@ -39,9 +39,10 @@ void check_tree(const Payload& bins, const Payload& tree, std::uint32_t kind, co
 /// The same of local environments, and LOCL. Sets parts.local and parts.lights.
 void check_local_kind(const Payload& description, const Payload& local, const TileBoxes& boxes, Report& report,
                       Parts& parts) noexcept;
-/// PLAC of a local environment; needs what check_local_kind sets. Sets parts.visibility if it is right.
-void check_visibility(const Payload& payload, Report& report, Parts& parts) noexcept;
-/// PORT of a local environment; needs what check_visibility sets. Sets parts.portals if it is right.
+/// PLAC and PORT of a local environment, where they are; needs what check_local_kind and check_rows set. Sets
+/// parts.visibility and parts.portals if they are right.
+void check_seen(const Payloads& payloads, Report& report, Parts& parts) noexcept;
+/// PORT; needs parts.visibility.
 void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
 void check_brdf_kind(const Payloads& payloads, Report& report, Parts& parts) noexcept;

@@ -163,7 +163,7 @@ const Rule rules[] = {
      "positive finite share."},
     {7007, error, "bright-tile-row", "In the row of a bin of positive share a bright tile has probability 0."},
     {7008, error, "environment-share", "The share of an environment's bin is 1."},
-    {7009, error, "visibility", "PLAC comes with TILE and is as long as its counts say, with at least one row."},
+    {7009, error, "visibility", "PLAC comes with NORM and is as long as its counts say, with at least one row."},
     {7010, error, "visibility-bounds",
      "The bounds of visibility cells are finite and rise, and the transform is finite."},
     {7011, error, "visibility-splits",
@@ -173,8 +173,8 @@ const Rule rules[] = {
      "A split of visibility cells is on one of axes 0 to 5, its position finite, its blend finite and not "
      "negative."},
     {7013, error, "visibility-columns",
-     "The columns of splits of tiles are numbered from 0 in their order, all of them in each set; FFFF where a "
-     "split has none."},
+     "The columns of each set of visibility cells stand in preorder, at most 64 on a path, each met once, and part "
+     "tiles that are there."},
     {7014, error, "visibility-odds", "No odds of a cell are 0 or 255: no part of the light has none."},
     {7015, error, "visibility-sets", "The set of columns that a row of visibility cells names is there."},
     {7016, error, "portals",

@@ -15,28 +15,27 @@ using ull = unsigned long long;
 u64 columns_at(const AcdfVisibility& header) {
     return sizeof header + u64{header.split_count} * sizeof(AcdfVisibilitySplit);
 }
-u64 sets_at(const AcdfVisibility& header, u32 tile_splits) {
-    return columns_at(header) + (1 + u64{header.further_sets}) * tile_splits * sizeof(std::uint16_t);
+u64 sets_at(const AcdfVisibility& header) {
+    return columns_at(header) + (1 + u64{header.further_sets}) * header.column_count * sizeof(AcdfColumn);
 }
 // Rows begin where columns and their sets end: they need no alignment.
-u64 rows_at(const AcdfVisibility& header, u32 tile_splits) {
-    return sets_at(header, tile_splits) +
-           (header.further_sets > 0 ? u64{header.row_count} * sizeof(std::uint16_t) : 0);
+u64 rows_at(const AcdfVisibility& header) {
+    return sets_at(header) + (header.further_sets > 0 ? u64{header.row_count} * sizeof(std::uint16_t) : 0);
 }
 
-bool check_size(const Payload& payload, u32 bright_tiles, u32 tile_splits, Report& report) {
+bool check_size(const Payload& payload, u32 top_splits, Report& report) {
     if (payload.size < sizeof(AcdfVisibility)) {
         report.add(7009, payload.at(0), "PLAC has %llu bytes", static_cast<ull>(payload.size));
         return false;
     }
     const AcdfVisibility& h = *reinterpret_cast<const AcdfVisibility*>(payload.data);
     if (h.row_count < 1 || h.row_count >= ACDF_VISIBILITY_ROW || h.split_count >= ACDF_VISIBILITY_ROW ||
-        h.column_count > tile_splits || h.further_sets > 0xFFFF) {
+        h.column_count > top_splits || h.column_count >= ACDF_MAX_COLUMNS || h.further_sets > 0xFFFF) {
         report.add(7009, payload.at(0), "%u splits, %u rows, %u columns, %u further sets of them", h.split_count,
                    h.row_count, h.column_count, h.further_sets);
         return false;
     }
-    const u64 size = rows_at(h, tile_splits) + u64{h.row_count} * (1 + bright_tiles + h.column_count);
+    const u64 size = rows_at(h) + u64{h.row_count} * (1 + u64{h.column_count});
     if (payload.size != size)
         report.add(7009, payload.at(0), "PLAC has %llu bytes instead of %llu", static_cast<ull>(payload.size),
                    static_cast<ull>(size));
@@ -85,69 +84,83 @@ bool check_splits(const Payload& payload, const AcdfVisibility& h, const AcdfVis
     return next == h.split_count;
 }
 
-void check_columns(const Payload& payload, const AcdfVisibility& h, const std::uint16_t* columns, u32 tile_splits,
-                   Report& report) {
-    for (u32 set = 0; set <= h.further_sets; ++set, columns += tile_splits) {
-        u32 next = 0, wrong = tile_splits;
-        for (u32 i = 0; i < tile_splits; ++i) {
-            if (columns[i] == ACDF_NO_COLUMN) continue;
-            if (columns[i] != next++ && wrong == tile_splits) wrong = i;
-        }
-        if (wrong == tile_splits && next == h.column_count) continue;
-        report.add(7013, payload.at(columns_at(h)), "%u columns are there in set %u, the header says %u", next, set,
-                   h.column_count);
-        return;
+// Visits the columns of a set in preorder. The upper parts of a path wait on a stack as deep as paths may be.
+bool are_columns(const AcdfColumn* columns, u32 count, u32 top_splits) {
+    struct Open {
+        u32 column, first, end, depth;
+    } open[ACDF_MAX_COLUMNS_DEEP + 1];
+    u32 waiting = 0, next = 0;
+    if (count > 0) open[waiting++] = {0, 0, top_splits + 1, 1};
+    while (waiting > 0) {
+        const Open now = open[--waiting];
+        if (now.column != next || next == count || now.depth > ACDF_MAX_COLUMNS_DEEP) return false;
+        const AcdfColumn& column = columns[next++];
+        if (column.tile <= now.first || column.tile >= now.end) return false;
+        if (column.parts & 0x7FFFu) open[waiting++] = {column.parts & 0x7FFFu, column.tile, now.end, now.depth + 1};
+        if (!(column.parts & 0x8000u)) open[waiting++] = {next, now.first, column.tile, now.depth + 1};
     }
+    return next == count;
 }
 
-bool check_sets(const Payload& payload, const AcdfVisibility& h, const std::uint16_t* set_of_row, u32 tile_splits,
-                Report& report) {
-    for (u32 row = 0; set_of_row && row < h.row_count; ++row) {
-        if (set_of_row[row] <= h.further_sets) continue;
-        report.add(7015, payload.at(sets_at(h, tile_splits) + u64{row} * sizeof *set_of_row), "row %u", row);
+bool check_columns(const Payload& payload, const AcdfVisibility& h, const AcdfColumn* columns, u32 top_splits,
+                   Report& report) {
+    for (u32 set = 0; set <= h.further_sets; ++set) {
+        if (are_columns(columns + u64{set} * h.column_count, h.column_count, top_splits)) continue;
+        report.add(7013, payload.at(columns_at(h)), "set %u of %u columns", set, h.column_count);
         return false;
     }
     return true;
 }
 
-void check_odds(const Payload& payload, const AcdfVisibilityTable& table, u32 tile_splits, Report& report) {
+bool check_sets(const Payload& payload, const AcdfVisibility& h, const std::uint16_t* set_of_row, Report& report) {
+    for (u32 row = 0; set_of_row && row < h.row_count; ++row) {
+        if (set_of_row[row] <= h.further_sets) continue;
+        report.add(7015, payload.at(sets_at(h) + u64{row} * sizeof *set_of_row), "row %u", row);
+        return false;
+    }
+    return true;
+}
+
+void check_odds(const Payload& payload, const AcdfVisibilityTable& table, Report& report) {
     const AcdfVisibility& h = *table.header;
-    const u64 first = 1 + u64{table.bright_tile_count}, width = first + h.column_count;
+    const u64 width = 1 + u64{h.column_count};
     for (u32 row = 0; row < h.row_count; ++row)
-        for (u64 i = first; i < width; ++i) {
+        for (u64 i = 1; i < width; ++i) {
             const u8 code = table.rows[row * width + i];
             if (code != 0 && code != 255) continue;
-            report.add(7014, payload.at(rows_at(h, tile_splits) + row * width + i), "row %u", row);
+            report.add(7014, payload.at(rows_at(h) + row * width + i), "row %u", row);
             return;
         }
 }
 
-} // namespace
-
-void check_visibility(const Payload& payload, Report& report, Parts& parts) noexcept {
+void check_visibility(const Payload& payload, Report& report, Parts& parts) {
     if (!parts.local) return; // reported elsewhere
-    if (!parts.tiles) {
-        report.add(7009, payload.at(0), "there are visibility cells, but no tiles");
+    if (!parts.normals) {
+        report.add(7009, payload.at(0), "there are visibility cells, but no rows of normals");
         return;
     }
-    const u32 tile_splits = parts.tiles->tile_count - 1;
-    if (!check_size(payload, parts.local->bright_tile_count, tile_splits, report)) return;
+    const u32 top_splits = parts.normals->split_count;
+    if (!check_size(payload, top_splits, report)) return;
     const auto* header = reinterpret_cast<const AcdfVisibility*>(payload.data);
     const auto* splits = reinterpret_cast<const AcdfVisibilitySplit*>(header + 1);
-    const auto* columns = reinterpret_cast<const std::uint16_t*>(splits + header->split_count);
-    const auto* sets = reinterpret_cast<const std::uint16_t*>(payload.data + sets_at(*header, tile_splits));
-    const AcdfVisibilityTable table{header,
-                                    splits,
-                                    columns,
-                                    header->further_sets > 0 ? sets : nullptr,
-                                    payload.data + rows_at(*header, tile_splits),
-                                    parts.local->bright_tile_count};
+    const auto* columns = reinterpret_cast<const AcdfColumn*>(splits + header->split_count);
+    const auto* set_of_row = reinterpret_cast<const std::uint16_t*>(payload.data + sets_at(*header));
+    const AcdfVisibilityTable table{header, splits, columns, header->further_sets > 0 ? set_of_row : nullptr,
+                                    payload.data + rows_at(*header)};
     check_bounds(payload, *header, report);
     const bool split = check_splits(payload, *header, splits, report);
-    const bool right = check_sets(payload, *header, table.set_of_row, tile_splits, report) && split;
-    check_columns(payload, *header, columns, tile_splits, report);
-    check_odds(payload, table, tile_splits, report);
-    if (right) parts.visibility = table;
+    const bool sets = check_sets(payload, *header, table.set_of_row, report);
+    const bool right = check_columns(payload, *header, columns, top_splits, report);
+    check_odds(payload, table, report);
+    if (split && sets && right) parts.visibility = table;
+}
+
+} // namespace
+
+void check_seen(const Payloads& payloads, Report& report, Parts& parts) noexcept {
+    if (payloads.of[chunk_visibility].data) check_visibility(payloads.of[chunk_visibility], report, parts);
+    if (payloads.of[chunk_portals].data && !report.stopped())
+        check_portals(payloads.of[chunk_portals], report, parts);
 }
 
 } // namespace acdf

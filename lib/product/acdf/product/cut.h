@@ -47,7 +47,7 @@ typedef struct AcdfCut {
     int count;              /* of parts; 0: there is nothing to sample */
     int nearest;            /* which of the rows weighs most */
     const uint16_t* hearts; /* by tables: which tiles that row lights most below each split; null: they have none */
-    AcdfVisibilityMixture cells; /* of the point */
+    AcdfVisibilityMixture cells; /* of the point, where it has any */
     AcdfCutPart part[ACDF_CUT_MAX_PARTS];
     AcdfCutSplit split[ACDF_CUT_MAX_PARTS - 1];
     uint32_t boxes[ACDF_CUT_BLOCKS][16];     /* `numbers` of 16 parts each, as AcdfSquares has boxes */
@@ -90,6 +90,7 @@ ACDF_FN void acdf_cut_begin_rows(const AcdfLocal* local, const AcdfLocalPoint* p
     cut->hearts = 0;
     for (k = 1; k < point->by.rows.count; ++k)
         if (point->by.rows.weight[k] > point->by.rows.weight[cut->nearest]) cut->nearest = k;
+    if (point->cells > 0) acdf_local_cells(local, point, &cut->cells);
     whole->node = local->rows_of_normals->splits ? 0 : ACDF_TILE_FLAG;
     whole->high[0] = local->environment.columns;
     whole->high[1] = local->environment.rows;
@@ -100,12 +101,8 @@ ACDF_FN void acdf_cut_begin_rows(const AcdfLocal* local, const AcdfLocalPoint* p
 /* Which tiles row k of a point lights most below each split, by tables; null: they have none. */
 ACDF_INLINE const uint16_t* acdf_cut_hearts(const AcdfLocal* local, const AcdfLocalPoint* point, int k) {
     const AcdfLocalTables* tables = local->tables;
-    const uint32_t splits = local->blend.tiles->tile_count - 1;
-    uint32_t row;
     if (!tables || !tables->hearts || point->mix.count == 0) return 0;
-    if (point->cells == 0) return acdf_local_hearts(tables, point->by.tabled.codes[k]);
-    row = splits > 0 ? (uint32_t)((size_t)(point->mix.row[k] - local->blend.rows) / splits) : 0;
-    return acdf_local_hearts(tables, acdf_tile_row(acdf_local_words(tables), &tables->tiles, row));
+    return acdf_local_hearts(tables, point->by.tabled.codes[k]);
 }
 
 /* The whole as one part, of probability 1. For points that bright tiles and shared tiles serve (ACDF_LOCAL_BLEND),
@@ -119,7 +116,7 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
         return;
     }
     cut->count = 1;
-    if (acdf_local_tabled(local, point)) {
+    if (acdf_local_tabled(local)) {
         const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local->tables);
         const AcdfScaledNormal normal = acdf_local_scaled_normal(point);
         const AcdfHorizon horizon = acdf_horizon(&normal);
@@ -143,7 +140,6 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
     for (k = 1; k < point->mix.count; ++k)
         if (point->mix.weight[k] > point->mix.weight[cut->nearest]) cut->nearest = k;
     cut->hearts = acdf_cut_hearts(local, point, cut->nearest);
-    if (point->cells > 0) acdf_local_cells(local, point, &cut->cells);
     whole->bright_tiles = acdf_cut_bright_tiles(cut, 0, whole->end_light);
     whole->sum = whole->bright_tiles + acdf_mixture_sum(&point->mix);
     whole->probability = 1.0;
@@ -151,7 +147,7 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
 
 /* The rows of a point as divisions read them, in tables or in the file. */
 ACDF_INLINE const uint8_t* const* acdf_cut_rows(const AcdfLocal* local, const AcdfLocalPoint* point) {
-    return acdf_local_tabled(local, point) ? point->by.tabled.codes : point->mix.row;
+    return acdf_local_tabled(local) ? point->by.tabled.codes : point->mix.row;
 }
 
 /* Asks for what divisions of the whole into `parts` read of the rows, so that it comes while something else is
@@ -192,30 +188,13 @@ ACDF_FN double acdf_cut_share(const AcdfLocal* local, const AcdfLocalPoint* poin
                               AcdfCutPart* upper, double* high) {
     const uint16_t* codebook = local->blend.tiles->codebook;
     const uint8_t* const* row = acdf_cut_rows(local, point);
-    const uint32_t split = acdf_local_tabled(local, point) ? part->entry : part->node;
+    const uint32_t split = acdf_local_tabled(local) ? part->entry : part->node;
     switch (point->mix.count) {
     case 3:
         return acdf_cut_share_rows(codebook, row, 3, split, part, upper, high);
     default:
         return acdf_cut_share_rows(codebook, row, point->mix.count, split, part, upper, high);
     }
-}
-
-/* What a position sees of the halves, made to add up to what the part had. Returns the sum of the lower one. */
-ACDF_FN double acdf_cut_see(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
-                            AcdfCutPart* part, AcdfCutPart* upper, double low, double* high) {
-    const double odds = acdf_visibility_odds(&local->visibility, local->blend.tiles->codebook, &cut->cells,
-                                             cut->cells.count, part->node);
-    double scale;
-    int i;
-    if (!(odds >= 0.0)) return low;
-    scale = (low + *high) / (low * odds + *high * (65535.0 - odds));
-    for (i = 0; i < point->mix.count; ++i) {
-        part->weight[i] *= scale * odds;
-        upper->weight[i] *= scale * (65535.0 - odds);
-    }
-    *high *= scale * (65535.0 - odds);
-    return low * (scale * odds);
 }
 
 /* The bright tiles of the halves of a part, whose numbers `upper` has, too. */
@@ -249,16 +228,29 @@ ACDF_INLINE AcdfCutPart* acdf_cut_add_split(AcdfCut* cut, int number, uint32_t p
     return upper;
 }
 
+/* What of all samples the lower half of a part has, where rows of halvings serve a point: a whole number, out of
+ * 2^52, but for points in visibility cells. */
+ACDF_INLINE double acdf_cut_lower_rows(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                                       const AcdfCutPart* part, const AcdfRowSplit* split) {
+    AcdfVisibleRows in;
+    if (point->cells == 0) return acdf_rows_mass(&point->by.rows, part->tile, split->tile) * 0x1p-52;
+    in.rows = local->rows_of_normals;
+    in.mix = &point->by.rows;
+    in.table = &local->visibility;
+    in.cells = &cut->cells;
+    return acdf_clamp(acdf_visible_before(&in, split->tile) - acdf_visible_before(&in, part->tile), 0.0, part->sum);
+}
+
 /* acdf_cut_divide where rows of halvings serve a point. */
 ACDF_FN void acdf_cut_divide_rows(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut, int number) {
     const AcdfNormalRows* rows = local->rows_of_normals;
     AcdfCutPart *part = &cut->part[number], *upper = &cut->part[cut->count];
     const AcdfRowSplit* split = &acdf_row_splits(rows)[part->node];
     const uint32_t axis = split->place & 1u, position = split->place >> 1;
-    const double lower = acdf_rows_mass(&point->by.rows, part->tile, split->tile) * 0x1p-52;
+    const double lower = acdf_cut_lower_rows(local, point, cut, part, split);
     *upper = *part;
     acdf_cut_add_split(cut, number, axis | position << 3);
-    upper->sum -= lower; /* exactly: whole numbers, out of 2^52 */
+    upper->sum -= lower;
     part->sum = lower;
     part->high[axis] = upper->low[axis] = position;
     part->node = acdf_cut_of_node(split->child[0]);
@@ -286,7 +278,6 @@ ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* p
      * and one. */
     upper->tile = child & ACDF_TILE_FLAG ? child & ~ACDF_TILE_FLAG : part->tile + child - part->node;
     low = acdf_cut_share(local, point, part, upper, &high);
-    if (point->cells > 0 && low + high > 0.0) low = acdf_cut_see(local, point, cut, part, upper, low, &high);
     acdf_cut_share_bright_tiles(local, cut, part, upper);
     part->sum = low + part->bright_tiles;
     upper->sum = high + upper->bright_tiles;

@@ -15,7 +15,7 @@ extern "C" {
 enum { ACDF_CUT_BATCH = 16, ACDF_CUT_FEWEST = 2, ACDF_FAST_CUT_FEWEST = 3, ACDF_CUT_BATCH_ROWS = 3 };
 
 ACDF_INLINE int acdf_cut_by_vectors(const AcdfLocal* local, const AcdfLocalPoint* point) {
-    return acdf_local_tabled(local, point) && point->mix.count == ACDF_CUT_BATCH_ROWS &&
+    return acdf_local_tabled(local) && point->mix.count == ACDF_CUT_BATCH_ROWS &&
            local->blend.tiles->tile_count > 1;
 }
 
@@ -181,7 +181,7 @@ ACDF_FN void acdf_cut_sample_batch(const AcdfProductVectors* vectors, const Acdf
     AcdfCutLane lane[ACDF_CUT_BATCH];
     AcdfCutLanes mixed;
     size_t first, i;
-    if (!ACDF_SIDE_BY_SIDE || cut->count == 0 || !acdf_local_tabled(local, point) ||
+    if (!ACDF_SIDE_BY_SIDE || cut->count == 0 || !acdf_local_tabled(local) ||
         point->mix.count != ACDF_CUT_BATCH_ROWS) {
         for (i = 0; i < count; ++i) out[i] = acdf_cut_sample(local, point, cut, u[i][0], u[i][1]);
         return;
@@ -216,7 +216,7 @@ ACDF_FN void acdf_cut_pdf_batch(const AcdfProductVectors* vectors, const AcdfLoc
     AcdfCutLane lane[ACDF_CUT_BATCH];
     uint32_t square[ACDF_CUT_BATCH][2];
     size_t first, i;
-    if (!ACDF_SIDE_BY_SIDE || cut->count == 0 || !acdf_local_tabled(local, point)) {
+    if (!ACDF_SIDE_BY_SIDE || cut->count == 0 || !acdf_local_tabled(local)) {
         for (i = 0; i < count; ++i) out[i] = acdf_cut_pdf(local, point, cut, directions[i]);
         return;
     }

@@ -116,7 +116,7 @@ ACDF_INLINE double acdf_cut_of_all(const AcdfMixture* mix, const double* u, doub
 /* Samples a tile of a part from its mixture; *inside becomes its share of that. */
 ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part,
                                       const AcdfMixture* mix, double* u, AcdfRange* range, double* inside) {
-    if (acdf_local_tabled(local, point)) {
+    if (acdf_local_tabled(local)) {
         const uint32_t* words = acdf_local_words(local->tables);
         const AcdfTileTables* tables = &local->tables->tiles;
         double from[2];
@@ -127,7 +127,6 @@ ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoi
         *inside = acdf_positive(*inside / whole);
         return tile;
     }
-    if (point->cells > 0) return acdf_local_sample_visible(local, point, mix, part->node, u, range, inside);
     return acdf_blend_sample_below(&local->blend, mix, part->node, u, range, inside);
 }
 
@@ -135,12 +134,11 @@ ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoi
 ACDF_FN uint32_t acdf_cut_find_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part,
                                     const AcdfMixture* mix, const uint32_t* square, AcdfRange* range,
                                     double* inside) {
-    if (acdf_local_tabled(local, point)) {
+    if (acdf_local_tabled(local)) {
         const uint32_t tile = acdf_tile_at(acdf_local_words(local->tables), &local->tables->tiles, square);
         *inside = acdf_local_found_tile(local, point, mix, tile, part->depth, range);
         return tile;
     }
-    if (point->cells > 0) return acdf_local_find_visible(local, point, mix, part->node, square, range, inside);
     return acdf_blend_find_below(&local->blend, mix, part->node, square, range, 0, inside);
 }
 
@@ -290,19 +288,28 @@ ACDF_FN const AcdfCutPart* acdf_cut_find(const AcdfCut* cut, const uint32_t* squ
     return &cut->part[~child];
 }
 
+/* What of the mixture a part has, out of 2^52, where rows of halvings serve a point. In it all tiles are as
+ * visible.
+ */
+ACDF_INLINE double acdf_cut_row_mass(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part) {
+    if (point->cells == 0) return part->sum * 0x1p52;
+    return acdf_rows_mass(&point->by.rows, part->tile, acdf_cut_end(local->rows_of_normals, part));
+}
+
 /* acdf_cut_pdf where rows of halvings serve a point. */
 ACDF_FN float acdf_cut_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                const AcdfGrid* grid, const uint32_t square[2]) {
     const AcdfNormalRows* rows = local->rows_of_normals;
     const AcdfCutPart* part = acdf_cut_find(cut, square);
+    AcdfRowCell cell;
+    double mass;
     uint32_t tile;
-    AcdfSpan box[2];
     if (!(part->probability > 0.0)) return 0.0f;
+    mass = acdf_cut_row_mass(local, point, part);
     tile = acdf_rows_find_below(rows, acdf_cut_node(part), square);
-    return acdf_float_pdf(acdf_rows_find_inside(
-        local->environment.halved, grid, acdf_row_tile(rows, tile),
-        part->probability * (acdf_rows_mass(&point->by.rows, tile, tile + 1u) / (part->sum * 0x1p52)), square,
-        box));
+    cell = acdf_rows_find_cell(local->environment.halved, grid, acdf_row_tile(rows, tile), square);
+    return acdf_float_pdf(part->probability * (acdf_rows_mass(&point->by.rows, tile, tile + 1u) / mass) *
+                          cell.share * cell.scale);
 }
 
 /* acdf_cut_sample where rows of halvings serve a point: from a part, u in [0, 1]. */
@@ -310,11 +317,12 @@ ACDF_FN AcdfDirectionSample acdf_cut_row_sample(const AcdfLocal* local, const Ac
                                                 const AcdfCutPart* part, const AcdfGrid* grid, double u[2]) {
     const AcdfNormalRows* rows = local->rows_of_normals;
     const AcdfRowMixture* mix = &point->by.rows;
-    double below = acdf_rows_sum(mix, mix->before, part->tile), mass = part->sum * 0x1p52;
+    const double all = acdf_cut_row_mass(local, point, part);
+    double below = acdf_rows_sum(mix, mix->before, part->tile), mass = all;
     const uint32_t tile =
         acdf_rows_search(mix, mix->before, part->tile, acdf_cut_end(rows, part), &below, &mass, &u[1]);
     return acdf_rows_direction(local->environment.halved, grid, acdf_row_tile(rows, tile),
-                               part->probability * (mass / (part->sum * 0x1p52)), u);
+                               part->probability * (mass / all), u);
 }
 
 /* Pdf per steradian with which acdf_cut_sample samples `direction` (unit); of cuts that are finished. */

@@ -19,7 +19,7 @@ extern "C" {
 
 /* A shading point, ready to be sampled from: plain bytes that may be copied. */
 typedef union AcdfProductPoint {
-    unsigned char bytes[13056];
+    unsigned char bytes[13184];
     double align;
 } AcdfProductPoint;
 
