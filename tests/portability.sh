@@ -14,8 +14,8 @@ strict=false
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 work=$PWD/build/portability
 mkdir -p "$work"
-reader=$(find lib/reader lib/batch lib/product lib/shader/tables -name '*.cpp' | grep -v '_avx\|vectors/none' | sort)
-flags="-O1 -std=c++17 -fno-exceptions -fno-rtti -ffp-contract=off -Wall -Wextra -Werror -Iformat -Ilib/reader -Ilib/batch -Ilib/product -Ilib/shader -Ilib"
+reader=$(find lib/reader lib/product lib/shader/tables -name '*.cpp' | sort)
+flags="-O1 -std=c++17 -fno-exceptions -fno-rtti -ffp-contract=off -Wall -Wextra -Werror -Iformat -Ilib/reader -Ilib/product -Ilib/shader -Ilib"
 left_out=0
 
 missing() { # TOOL WHAT
@@ -68,7 +68,7 @@ compile_builder() {
     ln -sfn /usr/include/oneapi "$work/tbb/oneapi"
     ln -sfn /usr/include/tbb "$work/tbb/tbb"
     for source in $(find lib/compress lib/build -name '*.cpp' | sort); do
-        "$cxx" -std=c++17 -Wall -Wextra -Werror -Wno-psabi -DACDF_VERSION='"0"' -fsyntax-only -Iformat -Ilib/reader -Ilib/batch -Ilib -Ilib/build \
+        "$cxx" -std=c++17 -Wall -Wextra -Werror -Wno-psabi -DACDF_VERSION='"0"' -fsyntax-only -Iformat -Ilib/reader -Ilib -Ilib/build \
             -isystem "$work/tbb" "$source"
         count=$((count + 1))
     done

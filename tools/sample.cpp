@@ -13,8 +13,6 @@
 #include "tools/cli/view_option.h"
 #include "tools/commands.h"
 
-#include <acdf/batch/batch.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -97,9 +95,9 @@ void sample_local(const File& file, const SampleArguments& options, Output& outp
     if (point.what == ACDF_LOCAL_NOTHING)
         throw Failure(options.file +
                       ": no light reaches this normal, so there is nothing to sample; choose another");
-    const LocalBatch view(file.local());
+    const LocalEnvironmentView view = file.local();
     write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
-        view.sample(point, u, count, samples);
+        for (std::size_t i = 0; i < count; ++i) samples[i] = view.sample(point, u[i][0], u[i][1]);
     });
 }
 

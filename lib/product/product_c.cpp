@@ -31,8 +31,6 @@ private:
     AcdfLobe lobe_;
 };
 
-acdf::ProductOptions options(int parts = 64) { return {parts, acdf_product_vectors()}; }
-
 acdf::BrdfLobe lobe_of(const AcdfBrdf& brdf) { return acdf::BrdfLobe(brdf); }
 
 template <class AnyLobe>
@@ -45,7 +43,7 @@ void at(const AcdfLocal& light, const AnyLobe& lobe, int parts, const float fram
     std::memcpy(axes.tangent, frame, sizeof axes.tangent);
     std::memcpy(axes.bitangent, frame + 3, sizeof axes.bitangent);
     std::memcpy(axes.normal, frame + 6, sizeof axes.normal);
-    new (out->bytes) typename Sampler::Point(Sampler(light, lobe, options(parts)).at(axes, wo));
+    new (out->bytes) typename Sampler::Point(Sampler(light, lobe, {parts}).at(axes, wo));
 }
 
 template <class AnyLobe>
@@ -56,25 +54,13 @@ const typename acdf::ProductSampler<AnyLobe>::Point& point_in(const AcdfProductP
 template <class AnyLobe>
 acdf::ProductSample sample(const AcdfLocal& light, const AnyLobe& lobe, const AcdfProductPoint* point, double u0,
                            double u1) noexcept {
-    return acdf::ProductSampler<AnyLobe>(light, lobe, options()).sample(point_in<AnyLobe>(point), u0, u1);
-}
-
-template <class AnyLobe>
-void samples(const AcdfLocal& light, const AnyLobe& lobe, const AcdfProductPoint* point, std::size_t count,
-             const double (*u)[2], AcdfDirectionSample* out) noexcept {
-    acdf::ProductSampler<AnyLobe>(light, lobe, options()).sample(point_in<AnyLobe>(point), count, u, out);
+    return acdf::ProductSampler<AnyLobe>(light, lobe).sample(point_in<AnyLobe>(point), u0, u1);
 }
 
 template <class AnyLobe>
 float pdf(const AcdfLocal& light, const AnyLobe& lobe, const AcdfProductPoint* point,
           const float direction[3]) noexcept {
-    return acdf::ProductSampler<AnyLobe>(light, lobe, options()).pdf(point_in<AnyLobe>(point), direction);
-}
-
-template <class AnyLobe>
-void pdfs(const AcdfLocal& light, const AnyLobe& lobe, const AcdfProductPoint* point, std::size_t count,
-          const float (*directions)[3], float* out) noexcept {
-    acdf::ProductSampler<AnyLobe>(light, lobe, options()).pdf(point_in<AnyLobe>(point), count, directions, out);
+    return acdf::ProductSampler<AnyLobe>(light, lobe).pdf(point_in<AnyLobe>(point), direction);
 }
 
 } // namespace
@@ -87,17 +73,9 @@ AcdfDirectionSample acdf_product_sample(const AcdfLocal* light, const AcdfBrdf* 
                                         double u0, double u1) {
     return sample(*light, lobe_of(*brdf), point, u0, u1);
 }
-void acdf_product_samples(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point, size_t count,
-                          const double (*u)[2], AcdfDirectionSample* out) {
-    samples(*light, lobe_of(*brdf), point, count, u, out);
-}
 float acdf_product_pdf(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point,
                        const float direction[3]) {
     return pdf(*light, lobe_of(*brdf), point, direction);
-}
-void acdf_product_pdfs(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point, size_t count,
-                       const float (*directions)[3], float* out) {
-    pdfs(*light, lobe_of(*brdf), point, count, directions, out);
 }
 
 void acdf_product_lobe_at(const AcdfLocal* light, const AcdfLobe* lobe, int parts, const float frame[9],
@@ -108,15 +86,7 @@ AcdfDirectionSample acdf_product_lobe_sample(const AcdfLocal* light, const AcdfL
                                              const AcdfProductPoint* point, double u0, double u1) {
     return sample(*light, CLobe(*lobe), point, u0, u1);
 }
-void acdf_product_lobe_samples(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
-                               size_t count, const double (*u)[2], AcdfDirectionSample* out) {
-    samples(*light, CLobe(*lobe), point, count, u, out);
-}
 float acdf_product_lobe_pdf(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
                             const float direction[3]) {
     return pdf(*light, CLobe(*lobe), point, direction);
-}
-void acdf_product_lobe_pdfs(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
-                            size_t count, const float (*directions)[3], float* out) {
-    pdfs(*light, CLobe(*lobe), point, count, directions, out);
 }

@@ -116,7 +116,7 @@ py::tuple OpenFile::sample(const py::object& condition, const py::object& given,
     {
         const py::gil_scoped_release release;
         if (kind == ACDF_KIND_BRDF) acdf_sample_brdf_array(file(), from, at.each, numbers, u.count, w, p);
-        else if (kind == ACDF_KIND_LOCAL) acdf_local_batch_sample(file(), from, at.each, numbers, u.count, w, p);
+        else if (kind == ACDF_KIND_LOCAL) acdf_sample_local_array(file(), from, at.each, numbers, u.count, w, p);
         else acdf_sample_environment_array(file(), numbers, u.count, w, p);
     }
     return py::make_tuple(directions, pdfs);
@@ -161,7 +161,7 @@ py::array OpenFile::pdf(const py::object& condition, const py::object& given, co
     {
         const py::gil_scoped_release release;
         if (kind == ACDF_KIND_BRDF) acdf_pdf_brdf_array(file(), from, at.each, directions, w.count, p);
-        else if (kind == ACDF_KIND_LOCAL) acdf_local_batch_pdf(file(), from, at.each, directions, w.count, p);
+        else if (kind == ACDF_KIND_LOCAL) acdf_pdf_local_array(file(), from, at.each, directions, w.count, p);
         else acdf_pdf_environment_array(file(), directions, w.count, p);
     }
     return std::move(pdfs);

@@ -4,7 +4,6 @@
 #include "python/arrays.h"
 
 #include <acdf/acdf.h>
-#include <acdf/batch/batch_c.h>
 
 #include <atomic>
 #include <memory>

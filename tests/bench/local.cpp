@@ -1,14 +1,14 @@
-// Time of a shading point, samples and pdfs of local environment files, with runtime tables and without, and
-// many at once, beside the full table of an environment of as many columns, which knows nothing of normals.
+// Time of a shading point, samples and pdfs of local environment files, with runtime tables and without, beside the
+// full table of an environment of as many columns, which knows nothing of normals.
 //
 //   bench_local FILE.acdf...      tables in Markdown
-//   bench_local --count point|sample|pdf FILE N [walk|batches]     N calls and nothing else, for callgrind;
-//   batches: AVX2
+//   bench_local --count point|sample|pdf FILE N [walk]     N calls and nothing else, for callgrind
 #include "tests/bench/directions.h"
 #include "tests/bench/full_table.h"
 #include "tests/bench/turns.h"
 
-#include <acdf/batch/batch.h>
+#include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <algorithm>
 #include <array>
@@ -29,14 +29,12 @@ using acdf_bench::uniform_directions;
 
 constexpr std::size_t kCalls = std::size_t{1} << 18; // before they repeat
 constexpr std::size_t kShared = 16;                  // calls a point, where a point has several
-constexpr std::size_t kBatch = 4096;                 // calls at once
 
 /// What is asked: normals, pairs of numbers, directions anywhere and such as are sampled. Coherent ones go over a
 /// sphere, and through the strata of the numbers, in the order of a picture's pixels.
 struct Questions {
     Directions normals = uniform_directions(kCalls, 1), anywhere = uniform_directions(kCalls, 2), sampled{kCalls};
     std::vector<std::array<float, 2>> u{kCalls};
-    std::vector<std::array<double, 2>> wide{kCalls}; ///< u
 
     explicit Questions(const LocalEnvironmentView& view, bool coherent = false) {
         std::mt19937_64 random(3);
@@ -52,7 +50,6 @@ struct Questions {
                 normals[i] = {static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)),
                               static_cast<float>(z)};
             }
-            wide[i] = {u[i][0], u[i][1]};
             const AcdfDirectionSample s = view.sample(normals[i].data(), u[i][0], u[i][1]);
             sampled[i] = {s.direction[0], s.direction[1], s.direction[2]};
         }
@@ -90,35 +87,24 @@ struct Compared {
     const acdf_bench::FullTable& full;
     const LocalEnvironmentView &plain, &fast;
     bool evicted = false;
-    LocalBatch batches[3] = {LocalBatch(fast, Instructions::none), LocalBatch(fast, Instructions::avx2),
-                             LocalBatch(fast, Instructions::avx512)};
 };
-
-/// Calls of a batch from one on, into memory of its own.
-using Batch = std::function<void(const LocalBatch& batch, std::size_t first, std::size_t count)>;
 
 /// `ours`: the calls of a view.
 template <class Ours, class Full>
-void report(const char* what, const Compared& all, const Ours& ours, const Full& full, const Batch& calls) {
+void report(const char* what, const Compared& all, const Ours& ours, const Full& full) {
     std::vector<Candidate> rows = {{"",
                                     [&](std::size_t first, std::size_t count) {
                                         for (std::size_t i = first; i < first + count; ++i) full(i);
                                     }},
                                    ours(all.plain),
                                    ours(all.fast)};
-    if (calls)
-        for (const LocalBatch& batch : all.batches)
-            rows.push_back({"", [&](std::size_t first, std::size_t count) {
-                                for (std::size_t i = 0; i < count; i += kBatch)
-                                    calls(batch, first + i, std::min(kBatch, count - i));
-                            }});
     acdf_bench::Turns turns;
     if (all.evicted) turns = {20, 1024, kCalls, true};
     acdf_bench::take_turns(rows, turns);
     std::printf("| %s | %.1f |", what, rows[0].least);
     for (std::size_t i = 1; i < rows.size(); ++i)
         std::printf(" %.1f (%.2f) |", rows[i].least, rows[i].least / rows[0].least);
-    std::puts(calls ? "" : " | | |");
+    std::puts("");
     std::fflush(stdout);
 }
 
@@ -139,8 +125,7 @@ bool run(const char* path) {
     const Questions q(plain);
     std::printf(
         "\nA file of %llu bytes%s, with tables of %llu bytes; full table of %u x %u\n\n| ns a call (of the full "
-        "table's) | full table | no tables | tables | batch, no SIMD | batch, AVX2 | batch, AVX-512 "
-        "|\n|---|---|---|---|---|---|---|\n",
+        "table's) | full table | no tables | tables |\n|---|---|---|---|\n",
         static_cast<unsigned long long>(tables.size()),
         fast.data().fast.grid ? " in the fast shape"
         : latlong             ? ""
@@ -148,7 +133,7 @@ bool run(const char* path) {
         static_cast<unsigned long long>(tables.table_bytes()), columns, columns / 2);
     Compared all = {full, plain, fast};
     const auto nothing = [](const auto&, const AcdfLocalPoint& point, std::size_t) { keep(point); };
-    const auto draw = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
+    const auto sample = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
         keep(view.sample(point, q.u[k][0], q.u[k][1]));
     };
     const auto both = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
@@ -164,32 +149,6 @@ bool run(const char* path) {
     const auto full_sample = full_sample_of(q);
     const auto full_anywhere = [&](std::size_t i) { keep(full.pdf(q.anywhere[i].data())); };
     const auto full_sampled = [&](std::size_t i) { keep(full.pdf(q.sampled[i].data())); };
-    std::vector<DirectionSample> samples(kBatch);
-    std::vector<float> densities(kBatch);
-    const auto* normals = reinterpret_cast<const float(*)[3]>(q.normals.data());
-    const auto* u = reinterpret_cast<const double(*)[2]>(q.wide.data());
-    const auto* directions_sampled = reinterpret_cast<const float(*)[3]>(q.sampled.data());
-    const auto samples_of = [&samples](const Questions& asked) -> Batch {
-        return [&](const LocalBatch& batch, std::size_t first, std::size_t n) {
-            batch.sample(reinterpret_cast<const float(*)[3]>(asked.normals.data()) + first,
-                         reinterpret_cast<const double(*)[2]>(asked.wide.data()) + first, n, samples.data());
-        };
-    };
-    const Batch draws = samples_of(q);
-    const Batch shared_samples = [&](const LocalBatch& batch, std::size_t first, std::size_t n) {
-        for (std::size_t i = first; i < first + n; i += kShared)
-            batch.sample(fast.at(normals[i]), u + i, kShared, &samples[i - first]);
-    };
-    const Batch shared_pdfs = [&](const LocalBatch& batch, std::size_t first, std::size_t n) {
-        for (std::size_t i = first; i < first + n; i += kShared)
-            batch.pdf(fast.at(normals[i]), directions_sampled + i, kShared, &densities[i - first]);
-    };
-    const auto of = [&](const Directions& directions) -> Batch {
-        return [&](const LocalBatch& batch, std::size_t first, std::size_t n) {
-            batch.pdf(normals + first, reinterpret_cast<const float(*)[3]>(directions.data()) + first, n,
-                      densities.data());
-        };
-    };
     const auto full_both = [&](std::size_t i) {
         full_sample(i);
         full_anywhere(i);
@@ -203,35 +162,20 @@ bool run(const char* path) {
     const auto once = [&q](const Directions& directions) {
         return [&](const LocalEnvironmentView& view) { return pdf_each(view, q, directions); };
     };
-    report("shading point (full table: a sample)", all, at_points(1, nothing), full_sample, nullptr);
-    report("sample, a normal per call", all, sample_once(q), full_sample, draws);
-    report("sample, 16 per shading point", all, at_points(kShared, draw), full_sample, shared_samples);
-    report("pdf of a uniform direction, a normal per call", all, once(q.anywhere), full_anywhere, of(q.anywhere));
-    report("pdf of a sampled direction, a normal per call", all, once(q.sampled), full_sampled, of(q.sampled));
-    report("pdf, 16 per shading point", all, at_points(kShared, sampled), full_sampled, shared_pdfs);
+    report("shading point (full table: a sample)", all, at_points(1, nothing), full_sample);
+    report("sample, a normal per call", all, sample_once(q), full_sample);
+    report("sample, 16 per shading point", all, at_points(kShared, sample), full_sample);
+    report("pdf of a uniform direction, a normal per call", all, once(q.anywhere), full_anywhere);
+    report("pdf of a sampled direction, a normal per call", all, once(q.sampled), full_sampled);
+    report("pdf, 16 per shading point", all, at_points(kShared, sampled), full_sampled);
     report("shading point, sample, and pdf of another direction (full table: both)", all, at_points(1, both),
-           full_both, nullptr);
+           full_both);
     const Questions coherent(plain, true);
-    report("sample, coherent normals and numbers", all, sample_once(coherent), full_sample_of(coherent),
-           samples_of(coherent));
+    report("sample, coherent normals and numbers", all, sample_once(coherent), full_sample_of(coherent));
     all.evicted = true;
-    report("sample, a normal per call, caches evicted", all, sample_once(q), full_sample, draws);
-    report("pdf of a uniform direction, a normal per call, caches evicted", all, once(q.anywhere), full_anywhere,
-           of(q.anywhere));
+    report("sample, a normal per call, caches evicted", all, sample_once(q), full_sample);
+    report("pdf of a uniform direction, a normal per call, caches evicted", all, once(q.anywhere), full_anywhere);
     return true;
-}
-
-/// N calls many at once; 'r': samples, else pdfs.
-void count_batches(const LocalBatch& batch, const Questions& q, char what, std::size_t calls) {
-    std::vector<DirectionSample> samples(kBatch);
-    std::vector<float> densities(kBatch);
-    for (std::size_t first = 0; first < calls; first += kBatch) {
-        const std::size_t k = first % kCalls, n = std::min(kBatch, calls - first);
-        const auto* normals = reinterpret_cast<const float(*)[3]>(q.normals[k].data());
-        if (what == 'r')
-            batch.sample(normals, reinterpret_cast<const double(*)[2]>(q.wide[k].data()), n, samples.data());
-        else batch.pdf(normals, reinterpret_cast<const float(*)[3]>(q.anywhere[k].data()), n, densities.data());
-    }
 }
 
 bool count(char** arguments, const char* how) {
@@ -241,10 +185,6 @@ bool count(char** arguments, const char* how) {
     const Questions q(view);
     const char what = arguments[0][1]; // point, sample, pdf
     const std::size_t calls = std::strtoull(arguments[2], nullptr, 10);
-    if (std::strcmp(how, "batches") == 0) {
-        count_batches(LocalBatch(view, Instructions::avx2), q, what, calls);
-        return true;
-    }
     for (std::size_t i = 0; i < calls; ++i) {
         const std::size_t k = i % kCalls;
         const float* const normal = q.normals[k].data();

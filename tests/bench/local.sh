@@ -25,6 +25,4 @@ local_file spruit_sunrise_4k.exr fast_wide --shape fast
         for what in point draw pdf; do printf ' | %s' "$(instructions bench_local $what "$work/large.acdf" "${options[@]}")"; done
         printf ' |\n'
     done
-    printf '| batch, AVX2 | | %s | %s |\n' "$(instructions bench_local sample "$work/large.acdf" batches)" \
-        "$(instructions bench_local pdf "$work/large.acdf" batches)"
 } | "$here/../../docs/make/put_table.sh" local

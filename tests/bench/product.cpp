@@ -82,7 +82,7 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
          std::vector<Timed>& out) {
     using Sampler = ProductSampler<AnyLobe>;
     for (const int parts : {1, 8, 16, 32, 64, 96}) {
-        const Sampler sampler(light, lobe, ProductOptions{parts, acdf_product_vectors()});
+        const Sampler sampler(light, lobe, ProductOptions{parts});
         out.push_back({name + ", `at`, " + std::to_string(parts) + (parts == 1 ? " sub-region" : " sub-regions"),
                        [=, &all] {
                            for (const ShadingPoint& point_ : all)
@@ -90,22 +90,13 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
                        },
                        double{kPoints}});
     }
-    const Sampler sampler(light, lobe, ProductOptions{64, acdf_product_vectors()});
+    const Sampler sampler(light, lobe, ProductOptions{64});
     std::vector<typename Sampler::Point> points;
     for (const ShadingPoint& point_ : all) points.push_back(sampler.at(point_.frame, point_.wo));
     out.push_back({name + ", `sample`, 64 sub-regions",
                    [=, &all] {
                        for (std::size_t i = 0; i < kPoints; ++i)
                            for (const auto& u : all[i].u) sink = sampler.sample(points[i], u[0], u[1]).pdf;
-                   },
-                   double{kPoints * kDraws}});
-    out.push_back({name + ", `sample` of 16 at once, 64 sub-regions",
-                   [=, &all] {
-                       ProductSample sampled[kDraws];
-                       for (std::size_t i = 0; i < kPoints; ++i) {
-                           sampler.sample(points[i], kDraws, all[i].u, sampled);
-                           for (const ProductSample& s : sampled) sink = s.pdf;
-                       }
                    },
                    double{kPoints * kDraws}});
     out.push_back({name + ", `sample`, 64 sub-regions, other random numbers each turn",
@@ -117,33 +108,11 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
                            }
                    },
                    double{kPoints * kDraws}});
-    out.push_back({name + ", `sample` of 16 at once, 64 sub-regions, other random numbers each turn",
-                   [=] {
-                       double u[kDraws][2];
-                       ProductSample sampled[kDraws];
-                       for (const auto& point : points) {
-                           for (auto& pair : u)
-                               for (double& x : pair) x = other_number();
-                           sampler.sample(point, kDraws, u, sampled);
-                           for (const ProductSample& s : sampled) sink = s.pdf;
-                       }
-                   },
-                   double{kPoints * kDraws}});
-    out.push_back({name + ", `at` of 64 sub-regions and 16 samples one by one, per sample",
+    out.push_back({name + ", `at` of 64 sub-regions and 16 samples, per sample",
                    [=, &all] {
                        for (const ShadingPoint& point_ : all) {
                            const auto point = sampler.at(point_.frame, point_.wo);
                            for (const auto& u : point_.u) sink = sampler.sample(point, u[0], u[1]).pdf;
-                       }
-                   },
-                   double{kPoints * kDraws}});
-    out.push_back({name + ", `at` of 64 sub-regions and 16 samples at once, per sample",
-                   [=, &all] {
-                       ProductSample sampled[kDraws];
-                       for (const ShadingPoint& point_ : all) {
-                           const auto point = sampler.at(point_.frame, point_.wo);
-                           sampler.sample(point, kDraws, point_.u, sampled);
-                           for (const ProductSample& s : sampled) sink = s.pdf;
                        }
                    },
                    double{kPoints * kDraws}});

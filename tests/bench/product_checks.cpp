@@ -166,7 +166,7 @@ Counts check(const AcdfLocal& light, const AnyLobe& lobe, int pairs) {
     Random random;
     Counts out;
     for (int i = 0; i < pairs; ++i) {
-        const ProductSampler<AnyLobe> sampler(light, lobe, ProductOptions{i % 2 ? 64 : 8, acdf_product_vectors()});
+        const ProductSampler<AnyLobe> sampler(light, lobe, ProductOptions{i % 2 ? 64 : 8});
         float normal[3], local_wo[3], wo[3], wi[3];
         random.normal(i, normal);
         const SurfaceFrame frame = surface_frame(normal);

@@ -1,5 +1,4 @@
-// The batches that tests/bench/python.py is compared with: nanoseconds a call of C++, a million calls over arrays.
-#include <acdf/batch/batch.h>
+// The loops that tests/bench/python.py is compared with: nanoseconds a call of C++, a million calls over arrays.
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -32,7 +31,7 @@ int main(int argc, char** argv) {
     for (int i = 0; i < 3; ++i)
         if (argc != 4 || !acdf::File::open(argv[i + 1], files[i]).ok()) return std::fprintf(stderr, "no file\n"), 1;
     const auto sky = files[0].environment();
-    const acdf::LocalBatch local(files[1].local());
+    const acdf::LocalEnvironmentView local = files[1].local();
     const acdf::BrdfView brdf = files[2].brdf();
 
     struct Vector {
@@ -64,9 +63,14 @@ int main(int argc, char** argv) {
     std::printf("environment.pdf %.1f\n", nanoseconds([&] {
                     for (std::size_t i = 0; i < kCalls; ++i) pdf[i] = sky.pdf(towards[i]);
                 }));
-    std::printf("local.sample %.1f\n", nanoseconds([&] { local.sample(views, numbers, kCalls, sampled.data()); }));
+    std::printf("local.sample %.1f\n", nanoseconds([&] {
+                    for (std::size_t i = 0; i < kCalls; ++i)
+                        sampled[i] = local.sample(views[i], numbers[i][0], numbers[i][1]);
+                }));
     keep();
-    std::printf("local.pdf %.1f\n", nanoseconds([&] { local.pdf(views, towards, kCalls, pdf.data()); }));
+    std::printf("local.pdf %.1f\n", nanoseconds([&] {
+                    for (std::size_t i = 0; i < kCalls; ++i) pdf[i] = local.pdf(views[i], towards[i]);
+                }));
     std::printf("brdf.sample %.1f\n", nanoseconds([&] {
                     for (std::size_t i = 0; i < kCalls; ++i)
                         sampled[i] = brdf.sample(views[i], numbers[i][0], numbers[i][1]);

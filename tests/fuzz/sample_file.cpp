@@ -1,7 +1,7 @@
 #include "tests/fuzz/sample_file.h"
 
 #include "tests/fuzz/require.h"
-#include "tests/fuzz/sample_batches.h"
+#include "tests/fuzz/sample_product.h"
 
 #include <acdf/acdf.h>
 #include <acdf/shader/tables.h>
@@ -86,8 +86,7 @@ void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom& rando
         if (s.pdf == 0.0f) continue;
         require(is_unit(s.direction) && view.pdf(normal, s.direction) > 0.0f);
     }
-    batch_is_the_view(view, random);
-    product_at_once_is_the_product(view, random);
+    sample_product(view, random);
     sample_everything(view.environment(), random);
 }
 

@@ -22,24 +22,14 @@ bool counts(const AcdfDirectionSample& s, const ShadingPoint& point, Tally& tall
     return true;
 }
 
-/// Samples n samples of the set of numbers that has begun, several at once: use(sample) of those that may
-/// contribute.
+/// Samples n samples of the set of numbers that has begun: use(sample) of those that may contribute.
 template <class Use>
 void draw(const PointSampler& sampler, const ShadingPoint& point, std::uint64_t n, Random& random, Tally& tally,
           const Use& use) {
-    constexpr std::size_t at_once = 64;
-    double u[at_once][2];
-    AcdfDirectionSample sampled[at_once];
-    while (n > 0) {
-        const std::size_t some = std::min<std::uint64_t>(n, at_once);
-        for (std::size_t i = 0; i < some; ++i) {
-            const std::array<double, 2> pair = random.pair();
-            std::copy(pair.begin(), pair.end(), u[i]);
-        }
-        sampler.samples(some, u, sampled);
-        for (std::size_t i = 0; i < some; ++i)
-            if (counts(sampled[i], point, tally)) use(sampled[i]);
-        n -= some;
+    for (; n > 0; --n) {
+        const std::array<double, 2> u = random.pair();
+        const AcdfDirectionSample s = sampler.sample(u[0], u[1]);
+        if (counts(s, point, tally)) use(s);
     }
 }
 

@@ -28,10 +28,6 @@ public:
     /// u0, u1 in [0, 1). A pdf of 0: nothing was sampled (the sample counts, as 0). Directions below the horizon
     /// keep their pdf: the integrand is 0 there.
     virtual AcdfDirectionSample sample(double u0, double u1) const = 0;
-    /// The same of u[i] into out[i], i < count.
-    virtual void samples(std::size_t count, const double (*u)[2], AcdfDirectionSample* out) const {
-        for (std::size_t i = 0; i < count; ++i) out[i] = sample(u[i][0], u[i][1]);
-    }
     /// sr^-1, of `sample` at this point; 0 for directions that it never samples.
     virtual float pdf(const float wi[3]) const = 0;
     /// Which share of the samples to take from it beside others, in (0, 1]; 1 where it does not know.

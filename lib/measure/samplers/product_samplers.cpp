@@ -30,9 +30,6 @@ public:
         point_ = sampler_.at(point.position, frame_of(point), point.wo);
     }
     AcdfDirectionSample sample(double u0, double u1) const override { return sampler_.sample(point_, u0, u1); }
-    void samples(std::size_t count, const double (*u)[2], AcdfDirectionSample* out) const override {
-        sampler_.sample(point_, count, u, out);
-    }
     float pdf(const float wi[3]) const override { return sampler_.pdf(point_, wi); }
 
 private:
@@ -44,7 +41,7 @@ template <class AnyLobe>
 std::unique_ptr<LightSampler> made(const File& light, const AnyLobe& lobe, int parts, std::uint64_t brdf_bytes) {
     using Table = ProductTable<AnyLobe>;
     using Made = MovedToPoints<Table, ProductAtPoint<AnyLobe>>;
-    const ProductOptions options{parts, acdf_product_vectors()};
+    const ProductOptions options{parts};
     const std::uint64_t bytes = memory_of(light) + brdf_bytes;
     if (light.kind() == ACDF_KIND_LOCAL)
         return std::make_unique<Made>(Table{ProductSampler<AnyLobe>(light.local().data(), lobe, options), bytes});

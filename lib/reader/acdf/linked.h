@@ -2,8 +2,7 @@
  * cannot compile the inline functions of acdf/sample.h, local.h, brdf.h and table.h. All arguments are numbers and
  * pointers to them. Each returns the result of the inline function, bit for bit, where that is compiled with
  * -ffp-contract=off as the library is. Else directions may differ in the last bit on processors that fuse products
- * and sums (gcc's -march=native). All are thread-safe and allocate nothing. Arrays of local environments and BRDFs
- * take less time by acdf/batch/batch_c.h.
+ * and sums (gcc's -march=native). All are thread-safe and allocate nothing.
  *
  * Arrays are packed: two doubles u in [0, 1] a sample, three floats a direction, normal or view (unit vectors;
  * normals of any length > 0), a float a pdf (sr^-1). They may not overlap. Results have `count` items. Where

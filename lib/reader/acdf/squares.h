@@ -11,14 +11,6 @@
 #include <acdf/elementary.h>
 #include <acdf/layout.h>
 
-/* Whether several calls are made side by side: not by threads of a GPU, which wait for each other anyhow, and
- * whose registers would not hold them. */
-#ifdef ACDF_ON_GPU
-#define ACDF_SIDE_BY_SIDE 0
-#else
-#define ACDF_SIDE_BY_SIDE 1
-#endif
-
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -11,7 +11,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <new>
 #include <vector>
 
@@ -92,99 +91,6 @@ TEST(Product, PointsAreTheSameInAnyMemory) {
             ASSERT_EQ(std::memcmp(sampled[0].data(), sampled[1].data(), 200 * sizeof sampled[0][0]), 0) << seed;
         }
     }
-}
-
-constexpr acdf::Instructions each_instructions[] = {acdf::Instructions::none, acdf::Instructions::avx2,
-                                                    acdf::Instructions::avx512};
-
-// Whatever the numbers and directions are, and however many; what stands behind the last one stays.
-template <class AnySampler>
-void expect_single_calls(const AnySampler& sampler, const typename AnySampler::Point& point, std::size_t count,
-                         std::mt19937_64& rng) {
-    const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-53, 0x1p-1000, 0x1p-1074, NAN, -1.0, 2.0, HUGE_VAL};
-    double u[70][2];
-    acdf::ProductSample out[71];
-    float directions[70][3], pdfs[71];
-    ASSERT_LE(count, 70u);
-    for (auto& pair : u)
-        for (double& x : pair) x = rng() % 8 == 0 ? edges[rng() % std::size(edges)] : uniform(rng);
-    std::memset(out, 0x55, sizeof out);
-    std::memset(pdfs, 0x55, sizeof pdfs);
-    sampler.sample(point, count, u, out);
-    for (std::size_t i = 0; i < count; ++i) {
-        const acdf::ProductSample one = sampler.sample(point, u[i][0], u[i][1]);
-        ASSERT_EQ(std::memcmp(&out[i], &one, sizeof one), 0)
-            << i << " of " << count << ": " << u[i][0] << ' ' << u[i][1];
-        const Vector any = random_normal(rng);
-        std::memcpy(directions[i], i % 2 ? one.direction : any.v, sizeof any.v);
-        if (rng() % 16 == 0) directions[i][rng() % 3] = static_cast<float>(edges[rng() % std::size(edges)]);
-    }
-    sampler.pdf(point, count, directions, pdfs);
-    for (std::size_t i = 0; i < count; ++i) {
-        const float one = sampler.pdf(point, directions[i]);
-        ASSERT_EQ(std::memcmp(&pdfs[i], &one, sizeof one), 0) << i << " of " << count;
-    }
-    const unsigned char *behind = reinterpret_cast<const unsigned char*>(&out[count]),
-                        *last = reinterpret_cast<const unsigned char*>(&pdfs[count]);
-    for (std::size_t k = 0; k < sizeof *out; ++k) ASSERT_EQ(behind[k], 0x55);
-    for (std::size_t k = 0; k < sizeof *pdfs; ++k) ASSERT_EQ(last[k], 0x55);
-}
-
-TEST(Product, SeveralSamplesAreThoseOfSingleCalls) {
-    int together = 0, by_vectors = 0, in_groups = 0, by_fast_vectors = 0;
-    for (const acdf::Instructions most : each_instructions)
-        for (const bool tilts : {false, true})
-            each_point(
-                tilts, most, true,
-                [&](const LoadedLocal& loaded, const TestLobe&, const Sampler& sampler, const Sampler::Point& point,
-                    const std::string& name, std::mt19937_64& rng) {
-                    SCOPED_TRACE(name + ", instructions up to " + std::to_string(int(most)));
-                    AcdfLocal light = loaded.light();
-                    const bool vectors = acdf::product_vectors(most) != nullptr;
-                    in_groups += has_groups(point);
-                    const bool in_parts = has_cut(point) && point.cut.count > 1;
-                    together += in_parts && point.light.mix.count == ACDF_CUT_BATCH_ROWS;
-                    by_fast_vectors += has_groups(point) && vectors;
-                    by_vectors += vectors && in_parts && acdf_cut_by_vectors(&light, &point.light);
-                    for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{16}, rng() % 70})
-                        expect_single_calls(sampler, point, count, rng);
-                });
-    EXPECT_GT(together, 150);
-    EXPECT_GT(in_groups, 150);
-#if defined(__x86_64__)
-    EXPECT_EQ(by_vectors > 50, __builtin_cpu_supports("avx2") != 0);
-    EXPECT_EQ(by_fast_vectors > 50, __builtin_cpu_supports("avx2") != 0);
-#endif
-}
-
-// What no part or row gives anything, and values that are denormal.
-TEST(Product, SeveralSamplesOfFaintPartsAreThoseOfSingleCalls) {
-    std::mt19937_64 rng(5);
-    const TestLobe lobe{0.1};
-    for (const acdf::Instructions most : each_instructions)
-        for (std::uint32_t seed = 0; seed < 8; ++seed) {
-            const LoadedLocal loaded(random_local(seed, false));
-            AcdfLocal light = loaded.light();
-            acdf::ProductOptions options;
-            options.vectors = acdf::product_vectors(most);
-            const Sampler sampler(light, lobe, options);
-            const acdf::SurfaceFrame frame = acdf::surface_frame(random_normal(rng).v);
-            Sampler::Point point = sampler.at(frame, random_view(rng, frame).v);
-            const double scales[] = {1.0, 0.0, 0x1p-1074, 0x1p-1060, 0x1p-1000};
-            for (int i = 0; i < point.cut.count; ++i) {
-                AcdfCutPart& part = point.cut.part[i];
-                const double rows = scales[rng() % 5], bright_tiles = scales[rng() % 5];
-                for (double& weight : part.weight) weight *= rows;
-                for (std::uint32_t k = part.first_light; k < part.end_light; ++k)
-                    point.cut.light[k] *= bright_tiles;
-                part.bright_tiles = acdf_cut_bright_tiles(&point.cut, part.first_light, part.end_light);
-                part.sum = part.bright_tiles + ((part.weight[0] + part.weight[1]) + part.weight[2]);
-                part.probability *= scales[rng() % 5];
-            }
-            acdf_cut_finish(&point.cut);
-            SCOPED_TRACE("seed " + std::to_string(seed) + ", instructions up to " + std::to_string(int(most)));
-            for (const std::size_t count : {5u, 16u, 61u}) expect_single_calls(sampler, point, count, rng);
-        }
 }
 
 // The light's part, over the squares of its grid, in which it is constant; the lobe's part is the lobe's own.
@@ -301,17 +207,7 @@ TEST(Product, InCIsTheSame) {
                                       b = acdf_product_lobe_sample(&light, &c_lobe, &c_point, u0, u1);
             for (int k = 0; k < 3; ++k) ASSERT_EQ(a.direction[k], b.direction[k]);
             ASSERT_EQ(a.pdf, b.pdf);
-            const double numbers[3][2] = {{u1, u0}, {u0, u1}, {u0, u0}};
-            AcdfDirectionSample several[3];
-            acdf_product_lobe_samples(&light, &c_lobe, &c_point, 3, numbers, several);
-            ASSERT_EQ(std::memcmp(&several[1], &b, sizeof b), 0);
             ASSERT_EQ(acdf_product_lobe_pdf(&light, &c_lobe, &c_point, b.direction), b.pdf);
-            const float directions[2][3] = {{b.direction[0], b.direction[1], b.direction[2]},
-                                            {frame.normal[0], frame.normal[1], frame.normal[2]}};
-            float pdfs[2];
-            acdf_product_lobe_pdfs(&light, &c_lobe, &c_point, 2, directions, pdfs);
-            ASSERT_EQ(pdfs[0], b.pdf);
-            ASSERT_EQ(pdfs[1], sampler.pdf(point, frame.normal));
         }
     }
 }

@@ -1,7 +1,6 @@
 // Random lights of all shapes, lobes and shading points for tests of products.
 #pragma once
 
-#include "product/vectors/cut.h"
 #include "tests/inputs/directions.h"
 #include "tests/lib/reader/local_fast_random.h"
 #include "tests/lib/reader/local_loaded.h"
@@ -133,19 +132,16 @@ inline bool has_cut(const Sampler::Point& point) {
     return (point.light.what == ACDF_LOCAL_BLEND || point.light.what == ACDF_LOCAL_ROWS) && point.cut.count > 0;
 }
 
-// visit(file, lobe, sampler, point, name, random): of many files, with any number of parts, and vectors up to some;
-// `walked`: each eighth file is used without its runtime tables.
+// visit(file, lobe, sampler, point, name, random): of many files, with any number of parts.
 template <class Visit>
-void each_point(bool tilts, acdf::Instructions most, bool walked, const Visit& visit) {
+void each_point(bool tilts, const Visit& visit) {
     for (std::uint32_t seed = 0; seed < file_count; ++seed) {
         const LoadedLocal loaded(random_light(seed, tilts));
-        AcdfLocal light = loaded.light();
-        if (walked && seed % 8 == 7) light.tables = nullptr;
+        const AcdfLocal light = loaded.light();
         std::mt19937_64 rng(seed);
         for (int i = 0; i < 6; ++i) {
             acdf::ProductOptions options;
             options.parts = 1 + static_cast<int>(rng() % ACDF_CUT_MAX_PARTS);
-            options.vectors = acdf::product_vectors(most);
             const TestLobe lobe{widths[i % 3]};
             const bool all = rng() % 6 == 0; // of the light, whatever the normal
             const Sampler sampler = all ? Sampler(light.environment, lobe, options) : Sampler(light, lobe, options);
@@ -155,10 +151,6 @@ void each_point(bool tilts, acdf::Instructions most, bool walked, const Visit& v
                   "seed " + std::to_string(seed) + ", point " + std::to_string(i), rng);
         }
     }
-}
-template <class Visit>
-void each_point(bool tilts, const Visit& visit) {
-    each_point(tilts, acdf::Instructions::avx512, false, visit);
 }
 
 } // namespace acdf_test::products

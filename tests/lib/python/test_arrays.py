@@ -167,7 +167,7 @@ class LocalEnvironments(unittest.TestCase):
 
 
 class Brdfs(unittest.TestCase):
-    def test_large_arrays_are_drawn_by_batch_bit_for_bit(self):
+    def test_large_arrays_are_their_pieces(self):
         for name in ("brdf", "brdf_anisotropic", "brdf_floor"):
             brdf = acdf.open(golden(name))
             wo, u = directions(10000, 0.05), numbers(10000, 2)

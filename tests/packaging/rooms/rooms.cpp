@@ -1,12 +1,10 @@
 // A light file by each room beside the reader: rooms LOCAL.acdf.
-#include <acdf/batch/batch.h>
 #include <acdf/product/product.h>
 #include <acdf/reader.h>
 #include <acdf/shader/tables.h>
 #include <acdf/views.h>
 
 #include <cstdio>
-#include <cstring>
 
 namespace {
 
@@ -28,21 +26,12 @@ int main(int argc, char** argv) {
     if (argc != 2 || !acdf::File::open(argv[1], file).ok() || file.kind() != ACDF_KIND_LOCAL) return 1;
     const acdf::LocalEnvironmentView light = file.local();
     const float up[3] = {0.0f, 0.0f, 1.0f};
-    const double u[16][2] = {{0.3, 0.4}, {0.7, 0.2}};
-    acdf::DirectionSample many[16];
-    acdf::LocalBatch(light).sample(light.at(up), u, 16, many);
-    for (int i = 0; i < 16; ++i) {
-        const acdf::DirectionSample one = light.sample(up, u[i][0], u[i][1]);
-        if (std::memcmp(&one, &many[i], sizeof one) != 0) return 1;
-    }
-    acdf::ProductOptions options;
-    options.vectors = acdf_product_vectors();
-    const acdf::ProductSampler sampler(light.data(), acdf::Lobe(Cosine(), straight_up, cosine_pdf), options);
+    const acdf::ProductSampler sampler(light.data(), acdf::Lobe(Cosine(), straight_up, cosine_pdf));
     const auto point = sampler.at(up, up);
     const acdf::ProductSample s = sampler.sample(point, 0.9, 0.4);
     if (!(s.pdf > 0.0f) || sampler.pdf(point, s.direction) != s.pdf) return 1;
     acdf::ShaderTables tables;
     if (!acdf::ShaderTables::make(file, tables).ok()) return 1;
-    std::printf("batch, product and shader: %zu words\n", tables.size());
+    std::printf("product and shader: %zu words\n", tables.size());
     return 0;
 }

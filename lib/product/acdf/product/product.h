@@ -6,8 +6,6 @@
 //   BrdfView auto point = sampler.at(acdf::surface_frame(normal), wo);                  // once a shading point
 //   acdf::ProductSample s = sampler.sample(point, u0, u1);                     // s.direction, s.pdf in sr^-1
 //   float p = sampler.pdf(point, direction);                                   // of any direction
-//   sampler.sample(point, 16, u, out);                      // the same to the bit, several at once: in less time
-//   sampler.pdf(point, 16, directions, out);                // by ProductOptions::vectors in less still
 //
 // The tiles of the local file are a hierarchy whose nodes store the light times cosine in them (Lawrence et al.
 // 2005, §7.1). `at` divides those nodes in which light times BRDF is large until a number of sub-regions is
@@ -19,7 +17,6 @@
 // The sub-regions get what it does not give already. The pdf is that of the mixture.
 #pragma once
 
-#include <acdf/product/cut_batch.h>
 #include <acdf/product/product_cut.h>
 #include <acdf/product/product_groups.h>
 
@@ -30,8 +27,6 @@ struct ProductOptions {
     /// Into how many parts the sphere is divided, 1 to ACDF_CUT_MAX_PARTS: the BRDF is evaluated about once a part.
     /// More pay where more samples are taken. 1: light times cosine and the BRDF half and half.
     int parts = 64;
-    /// Several samples and pdfs at once take less time by vectors: acdf_product_vectors(). Results are the same.
-    const AcdfProductVectors* vectors = nullptr;
 };
 
 /// A shading point, ready to be sampled from. Plain data of bounded size.
@@ -58,10 +53,10 @@ public:
 
     ACDF_METHOD ProductSampler(const AcdfLocal& light, const AnyLobe& lobe,
                                const ProductOptions& options = {}) noexcept
-        : light_(light), local_(true), lobe_(lobe), parts_(options.parts), vectors_(options.vectors) {}
+        : light_(light), local_(true), lobe_(lobe), parts_(options.parts) {}
     ACDF_METHOD ProductSampler(const AcdfEnvironment& light, const AnyLobe& lobe,
                                const ProductOptions& options = {}) noexcept
-        : light_(), local_(false), lobe_(lobe), parts_(options.parts), vectors_(options.vectors) {
+        : light_(), local_(false), lobe_(lobe), parts_(options.parts) {
         light_.environment = light;
     }
 
@@ -80,16 +75,9 @@ public:
     /// Samples a direction; u0 and u1 in [0, 1]. pdf in sr^-1; 0 where nothing is sampled: it counts as 0, as do
     /// directions below the surface.
     ACDF_METHOD ProductSample sample(const Point& point, double u0, double u1) const noexcept;
-    /// The same of u[i] into out[i], i < count, to the bit: in less time where a point is sampled from several
-    /// times.
-    ACDF_METHOD void sample(const Point& point, std::size_t count, const double (*u)[2],
-                            ProductSample* out) const noexcept;
     /// The pdf in sr^-1 of a unit direction; exactly that of `sample` for what it returned. Positive wherever that
     /// of the lobe's own sampler is.
     ACDF_METHOD float pdf(const Point& point, const float direction[3]) const noexcept;
-    /// The same of directions[i] into out[i], i < count, to the bit: in less time, as for samples of bright tiles.
-    ACDF_METHOD void pdf(const Point& point, std::size_t count, const float (*directions)[3],
-                         float* out) const noexcept;
 
 private:
     ACDF_METHOD float light_pdf(const Point& point, const float direction[3]) const noexcept;
@@ -98,31 +86,19 @@ private:
         point.frame.to_local(direction, wi);
         return lobe_.pdf(point.lobe, wi);
     }
-    /// Several of the light's part, where a cut is sampled from.
-    ACDF_METHOD void light_samples(const Point& point, std::size_t count, const double (*u)[2],
-                                   ProductSample* out) const noexcept;
-    ACDF_METHOD void light_pdfs(const Point& point, std::size_t count, const float (*directions)[3],
-                                float* out) const noexcept;
     ACDF_METHOD static float mixed(const Point& point, float light, float lobe) noexcept;
     /// Whether a cut through a tree is sampled from.
     ACDF_METHOD static bool samples_cut(const Point& point) noexcept {
         return point.light.what == ACDF_LOCAL_BLEND || (point.light.what == ACDF_LOCAL_ROWS && point.cut.count > 0);
     }
-    /// Whether a cut is sampled from, and the lobe.
-    ACDF_METHOD static bool samples_both(const Point& point) noexcept {
-        return (samples_cut(point) || samples_groups(point)) && point.share >= 0.0 && point.share < 1.0;
-    }
     ACDF_METHOD static bool samples_groups(const Point& point) noexcept {
         return point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0;
     }
-    ACDF_METHOD void sample_batch(const Point& point, std::size_t count, const double (*u)[2],
-                                  ProductSample* out) const noexcept;
 
     AcdfLocal light_;
     bool local_; ///< or an environment alone
     AnyLobe lobe_;
     int parts_;
-    const AcdfProductVectors* vectors_;
 };
 
 template <class AnyLobe>
@@ -145,7 +121,7 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
         point.light.cells = point.light.portals = 0;
     }
     point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
-    const PointOfLobe<AnyLobe> of_lobe = {light_, point.light, point.frame, lobe_, point.lobe, parts_, vectors_};
+    const PointOfLobe<AnyLobe> of_lobe = {light_, point.light, point.frame, lobe_, point.lobe, parts_};
     if (point.light.what == ACDF_LOCAL_BLEND ||
         (point.light.what == ACDF_LOCAL_ROWS && acdf_cut_serves_rows(&light_))) {
         point.share = CutRating<AnyLobe>(of_lobe, point.cut).make();
@@ -163,25 +139,6 @@ ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const f
     if (samples_cut(point)) return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
     if (samples_groups(point)) return acdf_fast_cut_pdf(&light_, &point.light, &point.fast, direction);
     return acdf_local_pdf_at(&light_, &point.light, direction);
-}
-
-template <class AnyLobe>
-ACDF_METHOD void ProductSampler<AnyLobe>::light_samples(const Point& point, std::size_t count, const double (*u)[2],
-                                                        ProductSample* out) const noexcept {
-    if (samples_cut(point)) {
-        acdf_cut_sample_batch(vectors_, &light_, &point.light, &point.cut, u, count, out);
-        return;
-    }
-    acdf_fast_cut_sample_batch(vectors_, &light_, &point.light, &point.fast, u, count, out);
-}
-template <class AnyLobe>
-ACDF_METHOD void ProductSampler<AnyLobe>::light_pdfs(const Point& point, std::size_t count,
-                                                     const float (*directions)[3], float* out) const noexcept {
-    if (samples_cut(point)) {
-        acdf_cut_pdf_batch(vectors_, &light_, &point.light, &point.cut, directions, count, out);
-        return;
-    }
-    acdf_fast_cut_pdf_batch(vectors_, &light_, &point.light, &point.fast, directions, count, out);
 }
 
 /// Of the mixture, by those of its parts.
@@ -222,79 +179,6 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
     }
     if (out.pdf > 0.0f) out.pdf = mixed(point, out.pdf, lobe_pdf(point, out.direction));
     return out;
-}
-
-/// Samples up to ACDF_CUT_BATCH of a point whose cut is sampled from, and its lobe.
-template <class AnyLobe>
-ACDF_METHOD void ProductSampler<AnyLobe>::sample_batch(const Point& point, std::size_t count, const double (*u)[2],
-                                                       ProductSample* out) const noexcept {
-    std::size_t of_light[ACDF_CUT_BATCH], of_lobe[ACDF_CUT_BATCH], lit = 0;
-    double rest[ACDF_CUT_BATCH][2];
-    ProductSample sampled[ACDF_CUT_BATCH];
-    float directions[ACDF_CUT_BATCH][3], wi[3], light[ACDF_CUT_BATCH], lobe[ACDF_CUT_BATCH];
-    for (std::size_t i = 0; i < count; ++i) {
-        const double x = acdf_unit_interval(u[i][0]);
-        rest[lit][0] = (x - point.share) / (1.0 - point.share);
-        rest[lit][1] = u[i][1];
-        of_light[lit] = of_lobe[i - lit] = i;
-        lit += static_cast<std::size_t>(!(x < point.share));
-    }
-    const std::size_t reflected = count - lit;
-    light_samples(point, lit, rest, sampled);
-    for (std::size_t k = 0; k < lit; ++k) {
-        out[of_light[k]] = sampled[k];
-        light[of_light[k]] = sampled[k].pdf;
-    }
-    for (std::size_t k = 0; k < reflected; ++k) {
-        rest[k][0] = acdf_unit_interval(u[of_lobe[k]][0]) / point.share;
-        rest[k][1] = u[of_lobe[k]][1];
-    }
-    for (std::size_t k = 0; k < reflected; ++k) {
-        sampled[k] = lobe_.sample(point.lobe, rest[k][0], rest[k][1]);
-        point.frame.to_world(sampled[k].direction, directions[k]);
-    }
-    light_pdfs(point, reflected, directions, lobe);
-    for (std::size_t k = 0; k < reflected; ++k) {
-        const std::size_t i = of_lobe[k];
-        out[i] = {{directions[k][0], directions[k][1], directions[k][2]}, sampled[k].pdf};
-        light[i] = lobe[k];
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        point.frame.to_local(out[i].direction, wi);
-        if (out[i].pdf > 0.0f) out[i].pdf = mixed(point, light[i], lobe_.pdf(point.lobe, wi));
-        else out[i] = {{0.0f, 0.0f, 0.0f}, 0.0f};
-    }
-}
-
-template <class AnyLobe>
-ACDF_METHOD void ProductSampler<AnyLobe>::sample(const Point& point, std::size_t count, const double (*u)[2],
-                                                 ProductSample* out) const noexcept {
-    constexpr std::size_t batch = ACDF_CUT_BATCH;
-    const bool both = samples_both(point);
-    for (std::size_t first = 0; both && first < count; first += batch)
-        sample_batch(point, count - first < batch ? count - first : batch, u + first, out + first);
-    for (std::size_t i = 0; !both && i < count; ++i) out[i] = sample(point, u[i][0], u[i][1]);
-}
-
-template <class AnyLobe>
-ACDF_METHOD void ProductSampler<AnyLobe>::pdf(const Point& point, std::size_t count, const float (*directions)[3],
-                                              float* out) const noexcept {
-    if (!samples_both(point)) {
-        for (std::size_t i = 0; i < count; ++i) out[i] = pdf(point, directions[i]);
-        return;
-    }
-    float wi[3], light[ACDF_CUT_BATCH];
-    for (; count > 0;) {
-        const std::size_t some = count < ACDF_CUT_BATCH ? count : std::size_t{ACDF_CUT_BATCH};
-        light_pdfs(point, some, directions, light);
-        for (std::size_t i = 0; i < some; ++i) {
-            point.frame.to_local(directions[i], wi);
-            out[i] = mixed(point, light[i], lobe_.pdf(point.lobe, wi));
-        }
-        count -= some;
-        directions += some;
-        out += some;
-    }
 }
 
 } // namespace acdf

@@ -5,7 +5,6 @@
  *   acdf_product_at(&local, &brdf, 64, frame, wo, &point);
  *   s = acdf_product_sample(&local, &brdf, &point, u0, u1);
  *   p = acdf_product_pdf(&local, &brdf, &point, direction);
- *   acdf_product_samples(&local, &brdf, &point, 16, u, out);
  */
 #ifndef ACDF_PRODUCT_C_H
 #define ACDF_PRODUCT_C_H
@@ -31,15 +30,9 @@ void acdf_product_at(const AcdfLocal* light, const AcdfBrdf* brdf, int parts, co
  * in sr^-1; it is 0 where nothing is sampled: the sample counts as 0, as do directions below the surface. */
 AcdfDirectionSample acdf_product_sample(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point,
                                         double u0, double u1);
-/* The same of u[i] into out[i], i < count, to the bit: in less time where a point is sampled from several times. */
-void acdf_product_samples(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point, size_t count,
-                          const double (*u)[2], AcdfDirectionSample* out);
 /* The pdf in sr^-1 of a unit direction; exactly that of the sample for what it returned. */
 float acdf_product_pdf(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point,
                        const float direction[3]);
-/* acdf_product_pdf of directions[i] into out[i], i < count, to the bit. */
-void acdf_product_pdfs(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point, size_t count,
-                       const float (*directions)[3], float* out);
 
 /* A renderer's own BRDF, as acdf::Lobe: of unit vectors in the surface's frame, wo above the surface. `data` is
  * handed to each function. */
@@ -50,17 +43,13 @@ typedef struct AcdfLobe {
     float (*pdf)(const void* data, const float wo[3], const float wi[3]); /* of `sample`, sr^-1 */
 } AcdfLobe;
 
-/* The five functions above with a renderer's own BRDF. */
+/* The three functions above with a renderer's own BRDF. */
 void acdf_product_lobe_at(const AcdfLocal* light, const AcdfLobe* lobe, int parts, const float frame[9],
                           const float wo[3], AcdfProductPoint* point);
 AcdfDirectionSample acdf_product_lobe_sample(const AcdfLocal* light, const AcdfLobe* lobe,
                                              const AcdfProductPoint* point, double u0, double u1);
-void acdf_product_lobe_samples(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
-                               size_t count, const double (*u)[2], AcdfDirectionSample* out);
 float acdf_product_lobe_pdf(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
                             const float direction[3]);
-void acdf_product_lobe_pdfs(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
-                            size_t count, const float (*directions)[3], float* out);
 
 #ifdef __cplusplus
 }

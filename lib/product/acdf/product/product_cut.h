@@ -3,7 +3,7 @@
 // header only, freestanding.
 #pragma once
 
-#include <acdf/product/cut_batch.h>
+#include <acdf/product/cut_sample.h>
 #include <acdf/product/part_queue.h>
 #include <acdf/product/product_point.h>
 
@@ -43,8 +43,7 @@ template <class AnyLobe>
 ACDF_METHOD void CutRating<AnyLobe>::sample_guides() noexcept {
     float world[LobeGuides::most][3], light[LobeGuides::most];
     of_.sample_guides(world, guides_);
-    acdf_cut_pdf_batch(of_.vectors, &of_.light, &of_.at, &cut_, world, static_cast<std::size_t>(guides_.count),
-                       light);
+    for (int i = 0; i < guides_.count; ++i) light[i] = acdf_cut_pdf(&of_.light, &of_.at, &cut_, world[i]);
     guides_.weigh(light);
 }
 

@@ -5,7 +5,6 @@
 #include <acdf/local.h>
 #include <acdf/product/lobe.h>
 #include <acdf/product/part_rating.h>
-#include <acdf/product/vectors.h>
 
 namespace acdf {
 
@@ -17,7 +16,6 @@ struct PointOfLobe {
     const AnyLobe& lobe;
     const typename AnyLobe::Point& lobe_at;
     int parts; ///< about how many are wanted
-    const AcdfProductVectors* vectors;
 
     /// Values and pdfs of the lobe are clamped to this, so that no sum of products overflows.
     static constexpr float most_value = 1e18f;
