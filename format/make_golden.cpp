@@ -14,7 +14,6 @@
 #include "compress/fit/fit.h"
 #include "compress/indexed/fit.h"
 #include "compress/store/store.h"
-#include "golden_fast.h"
 #include "golden_samples.h"
 #include "write_file.h"
 
@@ -449,20 +448,6 @@ Golden local(const char* name, AcdfParameterization parameterization, const std:
     return {name, store(tree, d)};
 }
 
-/// The fast shape; bin 7 is not stored.
-Golden local_fast(const char* name, AcdfParameterization parameterization) {
-    const StoredRows rows = golden_fast_rows();
-    EncodedTree tree = encode_tree({{{kPhi, {5}, {0.375, 0.625}, {}, {}}}, {0}});
-    tree.roots.clear();
-    for (std::uint32_t bin = 0; bin < 18; ++bin)
-        tree.roots.push_back(bin == 7 ? ACDF_NO_ROOT : bin % rows.row_count);
-    Description d = local_axes(environment_description(12, 8, parameterization),
-                               {{"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 18, 0.0, 18.0}}, 18);
-    d.chunks = shared_chunks(rows);
-    d.chunks.push_back(local_chunk(0.25f, {{{0.6f, 0.0f, 0.8f}, 0.125f, 0.5f, kGoldenFastLight, {4, 3}, {5, 8}}}));
-    return {name, store(tree, d)};
-}
-
 /// A tree for each bin of a grid of normals, some of them the same; bin 2 is not stored, bin 4 dark.
 Golden local_grid() {
     const Cascade cascade = {{{kPhi, {5}, {0.375, 0.625}, {-1, 1}, {}},
@@ -566,8 +551,6 @@ int main(int argc, char** argv) try {
           local_halvings(),
           local("octahedral_local", ACDF_PARAM_OCTAHEDRAL),
           local_grid(),
-          local_fast("local_fast", ACDF_PARAM_LATLONG),
-          local_fast("octahedral_local_fast", ACDF_PARAM_OCTAHEDRAL),
           local("visibility", ACDF_PARAM_LATLONG, {visibility_chunk(false)}),
           local("visibility_regions", ACDF_PARAM_LATLONG, {visibility_chunk(true)}),
           local("portals", ACDF_PARAM_LATLONG, {visibility_chunk(false), portals_chunk()}),

@@ -1,5 +1,4 @@
 // acdf info: what is inside a file, in a form for people or as JSON.
-#include "build/accuracy/cells.h"
 #include "build/text/format_names.h"
 #include "build/text/partner.h"
 #include "measure/samplers/light_samplers.h"
@@ -37,20 +36,10 @@ struct TreeCounts {
     std::uint64_t cells = 0; // segments that end; one of a shared curve counts once
 };
 
-/// Cells of grids, which are in no tree.
-std::uint64_t count_grids(const File& file) {
-    std::uint64_t cells = 0;
-    const auto boxes = build::tile_boxes(file);
-    for (std::uint32_t t = 0; t < boxes.size(); ++t)
-        build::for_each_tile_cell(file, t, boxes[t].data(), [&](const build::Cell&) { ++cells; });
-    return cells;
-}
-
 const AcdfNormalRows* rows_of(const File& file) {
     if (file.kind() == ACDF_KIND_BRDF) return file.brdf().data().rows_of_views;
     return file.kind() == ACDF_KIND_LOCAL ? file.local().data().rows_of_normals : nullptr;
 }
-bool is_fast(const File& file) { return file.kind() == ACDF_KIND_LOCAL && file.local().data().fast.grid; }
 
 /// All that are halved: splits of all maps, and what maps share below.
 std::uint64_t halving_count(const File& file) {
@@ -88,7 +77,6 @@ TreeCounts count_tree(const File& file) {
             std::uint64_t{1};
         return counts;
     }
-    if (is_fast(file)) counts.cells = count_grids(file);
     if (const AcdfTiles* tiles = file.blend().tiles; tiles && tiles->root_count == 0) {
         counts.cells = tiles->tile_count; // shared by all bins, and no curve divides them
         counts.curves = 0;
@@ -184,7 +172,7 @@ Json local_json(const File& file) {
     const AcdfNormalRows* const rows = local.rows_of_normals;
     const AcdfTiles* const tiles = local.blend.tiles;
     report["tiles"] = rows ? rows->splits + 1 : tiles ? tiles->tile_count : 0;
-    report["shape"] = rows ? "halvings" : is_fast(file) ? "fast" : tiles ? "small" : "separate";
+    report["shape"] = rows ? "halvings" : tiles ? "small" : "separate";
     report["rows"] = rows ? rows->rows : tiles ? tiles->row_count : 0;
     report["bright_tiles"] = local.bright_tile_count;
     report["cosine_share"] = local.cosine_share;

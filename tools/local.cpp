@@ -147,9 +147,6 @@ void LocalConversion::check() {
             throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
     if (portals_.given() && !visibility_) throw CLI::ValidationError("--portal", "is for --visibility");
     if (volume_ && !visibility_) throw CLI::ValidationError("--volume", "is for --visibility");
-    if (local_.shape == builder::LocalShape::fast)
-        for (const char* option : {"--no-sharing", "--visibility", "--max-weight", "--mis"})
-            if (given(option)) throw CLI::ValidationError("--shape", std::string("fast goes without ") + option);
     if (local_.shape == builder::LocalShape::halvings)
         for (const char* option : {"--no-sharing", "--visibility", "--max-weight"})
             if (given(option))
@@ -203,14 +200,7 @@ double gain(const builder::Local& result) {
 }
 
 const char* shape_name(builder::LocalShape shape) {
-    switch (shape) {
-    case builder::LocalShape::halvings:
-        return "halvings";
-    case builder::LocalShape::fast:
-        return "fast";
-    default:
-        return "small";
-    }
+    return shape == builder::LocalShape::halvings ? "halvings" : "small";
 }
 
 nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const builder::Local& result) const {
@@ -387,14 +377,13 @@ void LocalConversion::add_size(CLI::App& command) {
 void LocalConversion::add_shape(CLI::App& command) {
     using Shape = builder::LocalShape;
     constexpr Named<Shape> shapes[] = {
-        {"halvings", Shape::halvings}, {"small", Shape::small}, {"fast", Shape::fast}, {"auto", Shape::automatic}};
+        {"halvings", Shape::halvings}, {"small", Shape::small}, {"auto", Shape::automatic}};
     add_choice(
         command, "--shape", local_.shape, shapes,
         "halvings: one tree, with a row of codes for each normal: the least noise for its bytes; small: curves in "
-        "tiles, for --visibility, --max-weight and other MIS partners than the cosine; fast: tables that are "
-        "searched "
-        "by vectors; auto: halvings, or small where options ask for what that has not")
-        ->option_text("halvings|small|fast|auto [auto]")
+        "tiles, for --visibility, --max-weight and other MIS partners than the cosine; auto: halvings, or small "
+        "where options ask for what that has not")
+        ->option_text("halvings|small|auto [auto]")
         ->group("Size and accuracy");
 }
 

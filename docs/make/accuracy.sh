@@ -103,7 +103,7 @@ e6_plastic() { render e6-plastic e6-plastic 24x24; }
 
 # E7: the scenes of E6, and one of them behind a wall, with samplers of the product and their baselines.
 e7_samplers=('mis(local:1MB,brdf:64KiB)' 'product(local:1MB,brdf:64KiB)'
-    'product(local:1MB --shape fast,brdf:64KiB)' 'mis(compensated,brdf:64KiB)'
+    'mis(compensated,brdf:64KiB)'
     'mis(warp(local:1MB,brdf:64KiB),brdf:64KiB)' 'mis(tiles:12x12(brdf:64KiB),brdf:64KiB)' 'ris:8(local:1MB,brdf:64KiB)' 'ris:32(local:1MB,brdf:64KiB)')
 
 # scenes NAME SIZE SAMPLES SCENE...: one table of the samplers NAME_samplers, a column a scene

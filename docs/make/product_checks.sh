@@ -9,7 +9,7 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/acdf-checks-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 lights=()
 while read -r name options; do
-    for shape in small fast; do
+    for shape in small halvings; do
         # shellcheck disable=SC2086
         "$build/tools/acdf" local "$data/probes/$name" $options --budget 256KiB --shape $shape -o "$work/$name.$shape.acdf" --quiet
         lights+=("$work/$name.$shape.acdf")

@@ -86,8 +86,6 @@ typedef enum AcdfHeuristic {
 #define ACDF_CHUNK_METADATA ACDF_FOURCC('M', 'E', 'T', 'A')
 #define ACDF_CHUNK_TILES ACDF_FOURCC('T', 'I', 'L', 'E')
 #define ACDF_CHUNK_ROWS ACDF_FOURCC('R', 'O', 'W', 'S')
-#define ACDF_CHUNK_SUMS ACDF_FOURCC('S', 'U', 'M', 'S')
-#define ACDF_CHUNK_GRID ACDF_FOURCC('G', 'R', 'I', 'D')
 #define ACDF_CHUNK_LOCAL ACDF_FOURCC('L', 'O', 'C', 'L')
 #define ACDF_CHUNK_PARTNER ACDF_FOURCC('C', 'O', 'M', 'P')
 #define ACDF_CHUNK_VIEWS ACDF_FOURCC('V', 'I', 'E', 'W')
@@ -194,7 +192,7 @@ typedef struct AcdfMapsHeader {
 #define ACDF_MOST_INDEXED_AXES 3u
 
 /* Chunk NORM of a local environment or a BRDF, beside HALV and BINS and instead of TREE, TILE and ROWS (SPEC.md
- * §10.7 and §11): this, then a bit for each halving, 1 where each row has a code of its own, then row by row the
+ * §10.6 and §11): this, then a bit for each halving, 1 where each row has a code of its own, then row by row the
  * codes of these halvings, but for those that the row leads no random numbers to. Runs of bits as in HALV. */
 typedef struct AcdfNormalsHeader {
     uint32_t row_count;
@@ -239,7 +237,7 @@ typedef struct AcdfPlanes {
 typedef struct AcdfTiles {
     uint32_t tile_count;    /* 1 to ACDF_MAX_TILES */
     uint32_t root_count;    /* 0: every tile is a cell */
-    uint32_t row_count;     /* rows of chunk ROWS, or of SUMS */
+    uint32_t row_count;     /* rows of chunk ROWS */
     uint32_t reserved;      /* 0 */
     uint16_t codebook[256]; /* strictly increasing from 0 to 65535 */
 } AcdfTiles;
@@ -251,16 +249,7 @@ typedef struct AcdfSplit {
 } AcdfSplit;
 
 /* Chunk ROWS: row_count rows of tile_count - 1 bytes: codebook[code] / 65535 is the probability of a split's lower
- * part.
- *
- * Chunks SUMS and GRID, of the fast shape of local environments, instead (SPEC.md §10.6): `roots` are then offsets
- * in GRID, in bytes. SUMS: for each row cumulative uint16 over groups of tiles, as many as these rounded up to 16;
- * then for each row cumulative uint8 over the tiles of each group. GRID: for each tile two shifts, and the
- * cumulative uint8 of its cells; ACDF_FAST_CELLS bytes more, so that vectors may read on. */
-#define ACDF_FAST_GROUP 16u    /* tiles in a group */
-#define ACDF_FAST_CELLS 64u    /* on a side of a grid, at most */
-#define ACDF_FAST_WHOLE 32767u /* the last cumulative value of groups */
-#define ACDF_FAST_MOST_SHIFT 30u
+ * part. */
 
 /* Chunk LOCL, of local environments: this, then its bright tiles. */
 typedef struct AcdfLocalHeader {

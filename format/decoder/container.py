@@ -12,8 +12,7 @@ INFLATED_LIMIT = 1 << 30
 KNOWN = {b"DESC": (1, (1, 2, 3, 4, 5)), b"BINS": (1, (1, 2, 3, 4, 5)), b"TREE": (1, (1, 2, 3, 4, 5)),
          b"META": (0, (1, 2, 3, 4, 5)), b"TILE": (1, (2,)), b"ROWS": (1, (2,)), b"VIEW": (1, (3,)),
          b"LOCL": (1, (2,)), b"COMP": (1, (1, 2, 4)), b"PLAC": (0, (2,)), b"PORT": (0, (2,)),
-         b"SUMS": (1, (2,)), b"GRID": (1, (2,)), b"HALV": (1, (1, 2, 3, 5)),
-         b"MAPS": (1, (5,)), b"NORM": (1, (2, 3))}
+         b"HALV": (1, (1, 2, 3, 5)), b"MAPS": (1, (5,)), b"NORM": (1, (2, 3))}
 
 __all__ = ["Refused", "Container", "read_container"]
 

@@ -3,7 +3,6 @@ from .brdf import Brdf
 from .partner import Partner
 from .container import BRDF, ENVIRONMENT, INDEXED, LOCAL
 from .description import NOT_STORED
-from .fast import FastTiles
 from .halvings import Halvings
 from .indexed import Indexed, check_indexed_axes
 from .local import Local
@@ -39,12 +38,7 @@ def sampler_of(container, d):
             return Local(tree, d, rows, chunks.get(b"LOCL")) if kind == LOCAL else Brdf(tree, d, rows, chunks.get(b"VIEW"))
         return Environment(Halvings(chunks[b"HALV"], [axis.resolution for axis in d.axes]), None, grid_of(d))
     tiles = None
-    if b"SUMS" in chunks or b"GRID" in chunks:
-        require(all(name in chunks for name in (b"SUMS", b"GRID", b"TILE")), 6027)
-        require(not any(name in chunks for name in (b"ROWS", b"PLAC", b"PORT")), 6027)
-        require(len(d.axes) >= 2, 7003)
-        tiles = FastTiles(chunks[b"TILE"], chunks[b"SUMS"], chunks[b"GRID"], d.axes)
-    elif b"TILE" in chunks:
+    if b"TILE" in chunks:
         require(len(d.axes) >= 2, 7003)
         tiles = Tiles(chunks[b"TILE"], chunks.get(b"ROWS"), d.axes)
     else:

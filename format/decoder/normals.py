@@ -1,4 +1,4 @@
-"""SPEC.md §10.7: rows of normals or views at the top of a tree of halvings. What Tiles is to trees of curves."""
+"""SPEC.md §10.6: rows of normals or views at the top of a tree of halvings. What Tiles is to trees of curves."""
 import math
 import struct
 

@@ -15,10 +15,10 @@ class Split:
         self.axis, self.position, self.child = place & 7, place >> 3, (lower, upper)
 
 
-class Splits:
+class Tiles:
     """`roots` is None where all tiles are cells; `boxes` are the inherited ranges of the tiles on axes 0 and 1."""
 
-    def __init__(self, tile, axes):
+    def __init__(self, tile, rows, axes):
         require(len(tile) >= 528, 6020)
         self.count, root_count, self.row_count, reserved = struct.unpack_from("<4I", tile)
         require(1 <= self.count <= 32768 and root_count in (0, self.count) and reserved == 0, 6020)
@@ -30,6 +30,8 @@ class Splits:
         self.roots = list(struct.unpack_from(f"<{root_count}I", tile, 520 + 8 * self.count)) if root_count else None
         self.whole = [[0, axes[0].resolution], [0, axes[1].resolution]]
         self.boxes = self.walk()
+        require(rows is not None and len(rows) == self.row_count * (self.count - 1), 6025)
+        self.rows = np.frombuffer(rows, np.uint8).reshape(self.row_count, self.count - 1)
 
     def first(self):
         return 0 if self.count > 1 else TILE
@@ -67,15 +69,6 @@ class Splits:
             steps.append((node, upper))
             node = split.child[upper]
         return steps
-
-
-class Tiles(Splits):
-    """With rows of a byte a split, and trees in tiles."""
-
-    def __init__(self, tile, rows, axes):
-        super().__init__(tile, axes)
-        require(rows is not None and len(rows) == self.row_count * (self.count - 1), 6025)
-        self.rows = np.frombuffer(rows, np.uint8).reshape(self.row_count, self.count - 1)
 
     def is_dark(self, row, tile):
         """Whether a row gives a tile nothing."""

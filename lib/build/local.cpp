@@ -24,8 +24,6 @@ namespace {
 using compress::Goal;
 using compress::NormalBins;
 
-constexpr int kMostGrowths = 3; // of the number of tiles
-
 /// Everything of a file but its accuracy.
 struct LocalDraft {
     compress::EncodedTree tree;
@@ -97,22 +95,6 @@ std::uint64_t whole_of(std::uint64_t others, compress::WholeTree tree) {
     return tree == compress::WholeTree::own ? file_of_others(others) : others;
 }
 
-/// More tiles, where grids are as fine as they can be and leave `left` of `budget` bytes: false where there are
-/// none to be had.
-bool more_tiles(const LocalOptions& options, const NormalBins& bins, const compress::LocalFit& fit,
-                std::uint64_t budget, std::uint64_t left, compress::LocalSize& size) {
-    const bool ran_out = left > budget / 50 && options.shape == compress::LocalShape::fast;
-    if (!ran_out || options.tiles > 0 || fit.tiles.tiles.size() < size.tiles || size.tiles >= ACDF_MAX_TILES)
-        return false;
-    // Grids of more tiles take more bytes, too.
-    const double used = double(fit.shared.grid.size()) / double(budget - std::min(left, budget / 2));
-    const compress::LocalSize next = size_for(options, bins, double(budget), used);
-    if (next.tiles <= size.tiles) return false;
-    size.tiles = next.tiles;
-    size.inside_bytes = next.inside_bytes;
-    return true;
-}
-
 /// What one try leaves to the next.
 struct Tried {
     explicit Tried(const compress::Target& target) : alone(target) {}
@@ -158,8 +140,7 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         throw OutOfReach(
             all, whole_of(least == Least::unheard ? bytes : least_bytes(target, source, options, lit, size), tree));
     std::optional<compress::LocalFitter> fitter; // of so many tiles
-    std::optional<Local> grown;                  // the best of those that left bytes
-    for (int tries = 0, growths = 0;; ++tries) {
+    for (int tries = 0;; ++tries) {
         if (!fitter) fitter.emplace(target, bins, lit.light(), size, fitting(progress), options.mis);
         compress::LocalFit fit = fitter->outlined(size.inside_bytes);
         LocalDraft draft = shared_draft(fit, target, source, options, bins);
@@ -170,23 +151,11 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         if (fits && checked && !tried.alone.is_matched(fit.tree, all))
             return build_plain(target, source, options, all, next_choice(choice), max_weight, tried, least,
                                progress);
-        const auto completed = [&] {
+        if (fits && (full || tries > 0)) {
             fitter->fill(fit);
             draft = shared_draft(fit, target, source, options, bins);
-            Local made = finish(std::move(draft), target, source, options, bins);
-            // More tiles may take more from grids than they give.
-            if (grown && grown->accuracy.relative_variance < made.accuracy.relative_variance)
-                return std::move(*grown);
-            return made;
-        };
-        if (fits && growths < kMostGrowths && more_tiles(options, bins, fit, others, budget - bytes, size)) {
-            grown = completed();
-            fitter.reset();
-            ++growths;
-            tries = -1;
-            continue;
+            return finish(std::move(draft), target, source, options, bins);
         }
-        if (fits && (full || tries > 0)) return completed();
         const auto miss = static_cast<std::int64_t>(budget) - static_cast<std::int64_t>(bytes);
         const std::int64_t next = static_cast<std::int64_t>(size.inside_bytes) + miss - 192;
         if (next < 64 || tries == 6) {
@@ -290,14 +259,7 @@ Local build_separate(const compress::Target& target, const Source& source, const
 namespace {
 
 std::string shape_text(compress::LocalShape shape) {
-    switch (shape) {
-    case compress::LocalShape::small:
-        return "--shape small ";
-    case compress::LocalShape::fast:
-        return "--shape fast ";
-    default:
-        return "--shape halvings ";
-    }
+    return shape == compress::LocalShape::small ? "--shape small " : "--shape halvings ";
 }
 
 } // namespace
@@ -338,7 +300,7 @@ Local build_to_goal(const compress::Target& target, const Source& source, const 
     case Goal::Kind::variance:
         return build_to_variance(target, source, options, tried, progress);
     default: {
-        const double bytes = bytes_of_cell(options.shape) * options.goal.cells;
+        const double bytes = kBytesOfCell * options.goal.cells;
         LitBins& lit = bins_for(options, bytes_around(bytes), target, tried.bins);
         compress::LocalSize size = size_around(options, lit.bins(), bytes);
         return within_weight(options.max_weight, [&](double max_weight) {

@@ -35,15 +35,14 @@ enum class ShapeFrom {
 struct LocalOptions {
     compress::TargetOptions target;
     compress::Goal goal{compress::Goal::Kind::budget, 0, std::uint64_t{1} << 20,
-                        0.0};                 ///< cells: of the shared curves or grids
+                        0.0};                 ///< cells: of the shared curves
     std::uint32_t subdivisions = 0;           ///< octahedral bins; 0: as suits the size
     std::uint32_t columns = 0, rows = 0;      ///< lat-long bins, if not 0
     std::uint32_t tiles = 0;                  ///< 0: as suits the size
     double max_weight = 0.0;                  ///< with sharing: of the measured weights; 0: no bound
     std::vector<compress::SceneNormal> scene; ///< empty: all normals
     bool sharing = true;
-    compress::LocalShape shape =
-        compress::LocalShape::small; ///< with sharing; see LocalFitter for what goes with fast
+    compress::LocalShape shape = compress::LocalShape::small; ///< with sharing
     ShapeFrom shape_from = ShapeFrom::options;
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
     compress::FitOptions fit;                                   ///< of a bin's tree, without sharing

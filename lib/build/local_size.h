@@ -18,16 +18,12 @@ compress::NormalBins bins_as_many(const LocalOptions& options, std::uint32_t sub
 /// Bins for a file of `bytes`. For the few normals of a scene they can be denser at the same cost.
 compress::NormalBins bins_for(const LocalOptions& options, double bytes);
 
-/// Tiles, and curves or grids in them, that fill a budget: what else there is than a tree of the environment alone.
+/// Tiles, and curves in them, that fill a budget: what else there is than a tree of the environment alone.
 compress::LocalSize size_for(const LocalOptions& options, const compress::NormalBins& bins, double bytes);
-/// The same where of the bytes for both so much is inside tiles.
-compress::LocalSize size_for(const LocalOptions& options, const compress::NormalBins& bins, double bytes,
-                             double inside);
 /// Tiles for what is inside them, and so many bytes of that.
 compress::LocalSize size_around(const LocalOptions& options, const compress::NormalBins& bins, double inside_bytes);
 /// The bytes of a file that has so many inside tiles, about.
 double bytes_around(double inside_bytes);
-/// Bytes of a cell inside tiles, about.
-double bytes_of_cell(compress::LocalShape shape);
+constexpr double kBytesOfCell = 4.2; ///< inside tiles, about
 
 } // namespace acdf::build

@@ -44,7 +44,6 @@ void make_local(const Parts& parts, bool tables, AcdfFile& file) {
     local.cosine_share = static_cast<double>(parts.local->cosine_share);
     local.visibility = parts.visibility;
     local.portals = parts.portals;
-    local.fast = parts.fast;
     if (description.axis_count == 3) { // an octahedron's 4 n^2 + 2 corners
         while (4 * local.subdivisions * local.subdivisions + 2 < parts.axes[2].resolution) ++local.subdivisions;
     } else {
@@ -55,7 +54,6 @@ void make_local(const Parts& parts, bool tables, AcdfFile& file) {
         local.tables =
             keep(make_local_tables(local, parts.tree_units, most_table_bytes(file), file.allocator, file.memory[2]),
                  file);
-    if (local.fast.grid && local.tables) acdf_local_use_upper(&local);
 }
 
 void make_brdf(const Parts& parts, AcdfFile& file) {
@@ -86,7 +84,6 @@ void make_table(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) {
 
 void make_view(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) noexcept {
     file.blend = {parts.tiles, parts.splits, parts.tile_roots, parts.rows, parts.tree};
-    file.fast = parts.fast;
     if (file.kind() == ACDF_KIND_LOCAL) make_local(parts, survey != nullptr, file);
     if (file.kind() == ACDF_KIND_BRDF) make_brdf(parts, file);
     if (file.kind() == ACDF_KIND_TABLE) make_table(parts, survey, file);
@@ -97,6 +94,5 @@ BrdfView File::brdf() const noexcept { return BrdfView(opened_->brdf); }
 TableView File::table() const noexcept { return TableView(opened_->table); }
 IndexedEnvironment File::indexed() const noexcept { return IndexedEnvironment(opened_->indexed); }
 const AcdfBlend& File::blend() const noexcept { return opened_->blend; }
-const AcdfFast& File::fast() const noexcept { return opened_->fast; }
 
 } // namespace acdf

@@ -20,7 +20,6 @@ struct AcdfFile {
     AcdfEnvironment environment;
 #ifndef ACDF_ENVIRONMENT_ONLY
     AcdfBlend blend;
-    AcdfFast fast;
     AcdfLocal local;
     AcdfBrdf brdf;
     AcdfTable table;

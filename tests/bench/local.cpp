@@ -16,7 +16,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <functional>
 #include <random>
 
 namespace {
@@ -126,10 +125,7 @@ bool run(const char* path) {
     std::printf(
         "\nA file of %llu bytes%s, with tables of %llu bytes; full table of %u x %u\n\n| ns a call (of the full "
         "table's) | full table | no tables | tables |\n|---|---|---|---|\n",
-        static_cast<unsigned long long>(tables.size()),
-        fast.data().fast.grid ? " in the fast shape"
-        : latlong             ? ""
-                              : ", octahedral",
+        static_cast<unsigned long long>(tables.size()), latlong ? "" : ", octahedral",
         static_cast<unsigned long long>(tables.table_bytes()), columns, columns / 2);
     Compared all = {full, plain, fast};
     const auto nothing = [](const auto&, const AcdfLocalPoint& point, std::size_t) { keep(point); };

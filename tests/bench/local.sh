@@ -12,12 +12,10 @@ local_file noon_grass_1k.hdr small --budget 128KiB --shape small
 local_file noon_grass_1k.hdr large --shape small
 local_file noon_grass_1k.hdr octahedral --domain octahedral --shape small
 local_file spruit_sunrise_4k.exr wide --shape small
-local_file noon_grass_1k.hdr fast --shape fast
-local_file spruit_sunrise_4k.exr fast_wide --shape fast
 
 . "$here/instructions.sh"
 {
-    "$build/tests/bench/bench_local" "$work"/{small,large,octahedral,wide,fast,fast_wide}.acdf
+    "$build/tests/bench/bench_local" "$work"/{small,large,octahedral,wide}.acdf
     printf '\n| instructions, 1 MiB, noon_grass | shading point | sample | pdf |\n|---|---|---|---|\n'
     for how in tables walk; do
         if [ $how = walk ]; then options=(walk); else options=(); fi

@@ -63,7 +63,7 @@ struct Counts {
     int disagree = 0, violations = 0, beyond = 0;
 };
 
-/// Of the pdf by which parts are sampled, whatever their shape.
+/// Of the pdf by which parts are sampled.
 template <class Point>
 double cut_integral(const AcdfLocal& light, const Point& point) {
     const AcdfGrid grid = acdf_environment_grid(&light.environment);
@@ -73,9 +73,7 @@ double cut_integral(const AcdfLocal& light, const Point& point) {
         for (std::uint32_t x = 0; x < grid.columns; ++x) {
             const AcdfRange square[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
             const AcdfDirectionSample at = acdf_grid_position(&grid, square, middle, 1.0);
-            const float pdf = point.light.what == ACDF_LOCAL_FAST
-                                  ? acdf_fast_cut_pdf(&light, &point.light, &point.fast, at.direction)
-                                  : acdf_cut_pdf(&light, &point.light, &point.cut, at.direction);
+            const float pdf = acdf_cut_pdf(&light, &point.light, &point.cut, at.direction);
             sum += double{pdf} * acdf_grid_solid_angle(&grid, square);
         }
     return sum;
@@ -84,8 +82,7 @@ double cut_integral(const AcdfLocal& light, const Point& point) {
 /// Whether a point's light is sampled by parts.
 template <class Point>
 bool has_parts(const Point& point) {
-    return (point.light.what == ACDF_LOCAL_BLEND && point.cut.count > 0) ||
-           (point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0);
+    return (point.light.what == ACDF_LOCAL_BLEND || point.light.what == ACDF_LOCAL_ROWS) && point.cut.count > 0;
 }
 
 /// The light's grid: of each square that has light its middle.

@@ -292,7 +292,7 @@ FRESH += [["env", "sky.pfm", "later.pfm", *options.split()] for options in (
     "--axis time=6,18 --budget 6KiB", "--axis time=6,18 --no-sun --budget 6KiB --compress zlib --domain latlong")]
 FRESH += [["local", "sky.pfm", *options.split()] for options in (
     "--budget 24KiB --shape small", "--budget 24KiB --shape small --cosine-share 0.25 --compress zlib", "--no-sharing --cells 24",
-    "--budget 24KiB --mis cosine", "--budget 24KiB --shape fast", "--budget 48KiB --shape fast --compress zlib",
+    "--budget 24KiB --mis cosine", "--budget 24KiB",
     "--no-sharing --normals 5x3 --fit cdf --knots 6x6 --cosine-share 0.1",
     "--no-sharing --normals 5x3 --fit uniform --knots 6x6 --compress zlib")]
 FRESH += [["brdf", *options.split()] for options in (

@@ -2,7 +2,7 @@
 // (Those of the other fuzzers are in seeds/.)
 #include "tests/lib/reader/brdf_builder.h"
 #include "tests/lib/reader/indexed_builder.h"
-#include "tests/lib/reader/local_fast_random.h"
+#include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/normals_builder.h"
 #include "tests/lib/reader/planes.h"
 #include "tests/lib/reader/random_halvings.h"
@@ -31,7 +31,6 @@ int main(int argc, char** argv) {
     write(folder / "smallest", EnvironmentSpec().encode());
     write(folder / "complete", complete.encode());
     write(folder / "local", lit_local().encode());
-    write(folder / "fast", fast_lit_local().encode());
     write(folder / "normals", small_normals().encode());
     write(folder / "separate", separate_local().encode());
     write(folder / "visibility", regional_local().encode());
@@ -70,10 +69,8 @@ int main(int argc, char** argv) {
         write(folder / ("octahedral_tree" + std::to_string(seed)), RandomTree(seed, options).make().encode());
         options.depth = 3;
         write(folder / ("octahedral_local" + std::to_string(seed)), RandomLocal(seed, options).make().encode());
-        write(folder / ("octahedral_fast" + std::to_string(seed)), RandomFast(seed, options).make().encode());
         write(folder / ("normals" + std::to_string(seed)), random_normals(seed).encode());
         options.octahedral = false;
-        write(folder / ("fast" + std::to_string(seed)), RandomFast(seed, options).make().encode());
         LocalSpec local = RandomLocal(seed, options).make();
         local.zlib = seed % 4 == 0;
         write(folder / ("local" + std::to_string(seed)), local.encode());

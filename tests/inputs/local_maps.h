@@ -48,13 +48,6 @@ inline LocalFileOptions of_size(std::uint32_t tiles, std::uint64_t bytes, double
     return options;
 }
 
-/// The same of the fast shape.
-inline LocalFileOptions fast_of_size(std::uint32_t tiles, std::uint64_t bytes, double cosine_share = 0.0) {
-    LocalFileOptions options = of_size(tiles, bytes, cosine_share);
-    options.size.shape = acdf::compress::LocalShape::fast;
-    return options;
-}
-
 inline acdf::compress::Description local_description(const acdf::compress::Target& target,
                                                      const acdf::compress::NormalBins& bins) {
     acdf::compress::Description d =

@@ -14,8 +14,6 @@ namespace {
 
 // Of a pdf: what floats round. Beyond the second, it is another cell's.
 constexpr double kNear = 1e-5, kSame = 1e-3;
-// In the fast shape rows have weights that are whole numbers, 2^12 in all or more: one may be one more or less.
-constexpr double kNearOnGrids = 3.0 / 4096.0;
 // Samples of another cell than the reader's, and directions of another pdf: next to borders.
 constexpr double kMostOthers = 1e-4;
 
@@ -49,7 +47,6 @@ public:
 
     /// Of a pdf: what floats round.
     double near(const float d[3]) const {
-        if (file_.fast().grid) return kNearOnGrids;
         if (maps()) return kNear + cone_moves(d);
         return brdf() ? Halves(wo_, d).rounded() + weighed() : kNear;
     }

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT [FORM...]: exports files, samples and evaluates COUNT times of each on a device, and
 # compares with the reader. DEVICE: c, opencl, cuda, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only
-# compile. FORM: environment, on a lat-long grid; environment_square, on the octahedral one; local and local_square, the same
-# of the fast shape (local_fast, local_fast_square); brdf and brdf_anisotropic; maps. PROBE, BRDF, BUDGET and FLOOR in the environment
+# compile. FORM: environment, on a lat-long grid; environment_square, on the octahedral one; local and local_square; brdf and brdf_anisotropic; maps. PROBE, BRDF, BUDGET and FLOOR in the environment
 # name another source than that of tests, the size of the file, and the share of a BRDF that follows the cosine. MADE names a
 # folder for files that several devices take: DEVICE "file" puts them there, others take those that there are.
 set -euo pipefail
@@ -63,7 +62,6 @@ make_new_file() {
     [ -n "${PROBE-}" ] || "$make_sky" "$probe"
     case $form in *square) domain=octahedral ;; esac
     case $form in
-    local_fast*) kind=local shape=(--shape fast) ;;
     local*) kind=local shape=(--shape small) ;;
     esac
     "$acdf" $kind "$probe" "${shape[@]}" --domain $domain --budget "${BUDGET:-16KiB}" -o "$work/sky.acdf" --quiet

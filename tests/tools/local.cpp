@@ -163,17 +163,6 @@ TEST_F(LocalCommand, SaysWhereTheNormalGainsNothing) {
     EXPECT_NE(messages.find("`acdf env` does about as well"), std::string::npos) << messages;
 }
 
-TEST_F(LocalCommand, TheFastShape) {
-    const json report = made({"--shape", "fast", "--budget", "40kB"});
-    EXPECT_LE(report["bytes"], 40000);
-    EXPECT_EQ(report["support_violations"], 0);
-    const json info = json::parse(run_acdf({"info", output, "--json"}).out);
-    EXPECT_EQ(info["local"]["shape"], "fast");
-    EXPECT_EQ(info["options"], "--shape fast --budget 40000");
-    const Result measured = run_acdf({"measure", output, "--against", probe, "--json"});
-    EXPECT_EQ(json::parse(measured.out)["relative_variance"], report["relative_variance"]);
-}
-
 TEST_F(LocalCommand, TreesOfTheirOwn) {
     const json report = made({"--no-sharing", "--normals", "8x4", "--fit", "cdf", "--eps", "0.01"});
     EXPECT_EQ(report["bins"], 32);
@@ -192,11 +181,8 @@ TEST_F(LocalCommand, WrongUsageIsOneLine) {
     expect_usage({"--no-sharing", "--target-variance", "0.1"}, "--target-variance");
     expect_usage({"--cosine-share", "1"}, "--cosine-share");
     expect_usage({"--shape", "round"}, "--shape");
-    for (const char* other : {"--no-sharing", "--visibility"}) expect_usage({"--shape", "fast", other}, other);
-    for (const char* shape : {"fast", "halvings"})
-        expect_usage({"--shape", shape, "--max-weight", "20"}, "--max-weight");
-    expect_usage({"--shape", "fast", "--mis", "cosine"}, "--mis");
-    expect_usage({"--shape", "fast", "--normals", "8x4"}, "--no-sharing");
+    for (const char* other : {"--no-sharing", "--visibility"}) expect_usage({"--shape", "halvings", other}, other);
+    expect_usage({"--shape", "halvings", "--max-weight", "20"}, "--max-weight");
 }
 
 TEST_F(LocalCommand, IsOneTreeOfHalvingsByDefault) {
@@ -225,7 +211,7 @@ TEST_F(LocalCommand, TheSmallestSizeThatIsReportedIsPossible) {
     ACDF_NOT_SANITIZED();
     const std::string told = "the smallest possible is about ";
     for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
-             {}, {"--normals", "20"}, {"--shape", "fast"}, {"--mis", "cosine"}, {"--compress", "zlib"}}) {
+             {}, {"--normals", "20"}, {"--shape", "small"}, {"--mis", "cosine"}, {"--compress", "zlib"}}) {
         std::vector<std::string> words{"local", probe, "-o", output, "-q", "--force"};
         words.insert(words.end(), options.begin(), options.end());
         words.insert(words.end(), {"--budget", "600"});

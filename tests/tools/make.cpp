@@ -66,8 +66,7 @@ TEST_F(Make, OptionsThatAreGivenWin) {
     EXPECT_EQ(partner(made({"env", "--for", "pbrt-v4", "--mis", "cosine"})), "cosine power");
     const std::vector<std::vector<std::string>> alone = {
         {"env", "--max-weight", "9"},   {"env", "--target-variance", "2"},  {"env", "--fit", "cdf"},
-        {"local", "--max-weight", "9"}, {"local", "--cosine-share", "0.2"}, {"local", "--no-sharing"},
-        {"local", "--shape", "fast"}};
+        {"local", "--max-weight", "9"}, {"local", "--cosine-share", "0.2"}, {"local", "--no-sharing"}};
     for (std::vector<std::string> words : alone) {
         words.insert(words.end(), {"--for", "luxcore"});
         EXPECT_EQ(partner(made(words)), "none") << words[1];

@@ -130,7 +130,7 @@ std::string trimmed(const std::string& text) {
     return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-/// " --mis cosine --shares 2:1 --heuristic power --scene --shape fast".
+/// " --mis cosine --shares 2:1 --heuristic power --scene".
 void read_partner(const std::string& options, SamplerSpec& spec) {
     if (spec.kind != SamplerKind::env && spec.kind != SamplerKind::local && spec.kind != SamplerKind::learned &&
         spec.kind != SamplerKind::ideal)
@@ -144,18 +144,13 @@ void read_partner(const std::string& options, SamplerSpec& spec) {
             continue;
         }
         const std::string value = i + 1 < words.size() ? words[i + 1] : "";
-        if (words[i] == "--shape" && value == "fast" && spec.kind == SamplerKind::local) {
-            spec.fast = true;
-            ++i;
-            continue;
-        }
         const bool known = words[i] == "--mis"         ? parse_partner(value, spec.mis)
                            : words[i] == "--shares"    ? parse_shares(value, spec.mis)
                            : words[i] == "--heuristic" ? parse_heuristic(value, spec.mis)
                                                        : false;
         if (!known)
             fail(spec.text, "'" + words[i] + " " + value + "' is not an option: --mis cosine, --shares 2:1, " +
-                                "--heuristic power, --scene, or of local --shape fast");
+                                "--heuristic power or --scene");
         ++i;
     }
     const builder::Partner& mis = spec.mis;

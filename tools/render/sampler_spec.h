@@ -55,7 +55,6 @@ struct SamplerSpec {
     bool power = false;                  ///< mis: power heuristic
     builder::Partner mis;                ///< env, local, learned, ideal: that it is made for
     bool of_scene = false;               ///< env, local: made for the normals that the camera sees
-    bool fast = false;                   ///< local: of the fast shape
     bool automatic = false;              ///< a part of mis: gives as many samples as it recommends itself
     std::string path;                    ///< file
     std::uint32_t divisions = 0;         ///< product: parts of the sphere; 0: as many as the samples pay for

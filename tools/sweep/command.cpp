@@ -334,7 +334,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
     comma_separated(
         command.add_option("--files", options.sweep.files,
                            "Kinds of files to try, separated by commas. Probes: env, env-mis (--mis mean), "
-                           "local, local-mis (--mis cosine), visibility (with --scene), local-fast, "
+                           "local, local-mis (--mis cosine), visibility (with --scene), "
                            "local-separate, local-cdf, env-cdf, env-pdf, env-uniform; BRDFs: variance, "
                            "cdf, uniform"))
         ->option_text("NAMES [env,env-mis,local,local-mis; BRDFs: all]")
@@ -436,7 +436,7 @@ void add_sweep(CLI::App& program, int& exit_code) {
         "a file for each map with as many bytes in all.",
         "acdf sweep probe.exr -o out\n"
         "acdf sweep probe.exr -o out --scene room.obj\n"
-        "acdf sweep probe.exr -o out --files local,local-fast --budgets 64KiB,256KiB,1MB\n"
+        "acdf sweep probe.exr -o out --files local,local-separate --budgets 64KiB,256KiB,1MB\n"
         "acdf sweep 'day.####.exr' -o out --budgets 16KiB,64KiB\n"
         "acdf sweep nickel.binary -o out --spp 16\n"
         "acdf sweep ggx:alpha=0.1 -o out --files variance,cdf --no-timing"));

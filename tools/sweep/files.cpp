@@ -61,7 +61,6 @@ Candidate make_local(const Step& step, const builder::Target& target, const buil
     options.source = source;
     options.mis = partner;
     options.sharing = step.file != "local-separate" && step.file != "local-cdf";
-    if (step.file == "local-fast") options.shape = builder::LocalShape::fast;
     double bins = 1.0;
     if (step.file == "local-cdf") {
         options.columns = kPaperColumns, options.rows = kPaperRows;
@@ -98,7 +97,6 @@ const std::vector<FileKind>& file_kinds() {
         {"local", "local", "", Given::normal, false, medium},
         {"local-mis", "local", "--mis cosine", Given::normal, true, medium},
         {"visibility", "local", "--visibility", Given::position, false, large},
-        {"local-fast", "local", "--shape fast", Given::normal, false, medium},
         {"local-separate", "local", "--no-sharing", Given::normal, false, medium},
         {"local-cdf", "local", "--no-sharing --normals 25x10 --fit cdf", Given::normal, false, medium},
         {"env-cdf", "env", "--fit cdf", Given::nothing, false, small},

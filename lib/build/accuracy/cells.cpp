@@ -61,30 +61,6 @@ void add_boxes(const AcdfBlend& blend, std::uint32_t node, const TileBox& box, s
     }
 }
 
-/// `visit(i, steps)` for each of a list of ends: what it has of 255.
-template <class Visit>
-void for_each_end(const std::uint8_t* ends, std::uint32_t count, const Visit& visit) {
-    for (std::uint32_t i = 0; i < count; ++i) {
-        std::uint32_t end;
-        const std::uint32_t before = acdf_fast_before(ends, i, &end);
-        visit(i, end - before);
-    }
-}
-
-void for_each_grid_cell(const std::uint8_t* grid, const AcdfRange* range,
-                        const std::function<void(const Cell&)>& visit) {
-    std::uint32_t count[2];
-    for (int a = 0; a < 2; ++a) count[a] = acdf_fast_cells(range[a].high - range[a].low, grid[a]);
-    for_each_end(grid + 2, count[1], [&](std::uint32_t line, std::uint32_t of_line) {
-        for_each_end(grid + 2 + count[1] + line * count[0], count[0], [&](std::uint32_t i, std::uint32_t in_line) {
-            Cell cell = {{range[0], range[1]}, double(of_line * in_line) * (1.0 / 65025.0)};
-            acdf_fast_narrow(&cell.range[0], i, grid[0]);
-            acdf_fast_narrow(&cell.range[1], line, grid[1]);
-            visit(cell);
-        });
-    });
-}
-
 } // namespace
 
 void for_each_cell(const EnvironmentView& environment, const std::function<void(const Cell&)>& visit) {
@@ -138,7 +114,6 @@ void for_each_tile_cell(const File& file, std::uint32_t tile, const AcdfRange* r
     }
     const std::uint32_t root = local.blend.roots ? local.blend.roots[tile] : ACDF_NO_ROOT;
     if (root == ACDF_NO_ROOT) return visit({{range[0], range[1]}, 1.0});
-    if (local.fast.grid) return for_each_grid_cell(local.fast.grid + root, range, visit);
     for_each_cell_in(file, root, range, visit);
 }
 

@@ -122,13 +122,6 @@ private:
             spread(local_.blend.splits[node].child[upper], part[upper], whole, out);
     }
 
-    void spread_sums(const AcdfLocalPoint& source, std::vector<double>& out) const {
-        for (std::uint32_t t = 0; t < out.size(); ++t) {
-            const AcdfFastShare share = acdf_fast_share(&source.by.fast.mix, t);
-            out[t] = source.by.fast.unit * share.of / share.all;
-        }
-    }
-
     static void spread_rows(const AcdfRowMixture& mix, std::vector<double>& out) {
         for (std::uint32_t t = 0; t < out.size(); ++t) out[t] = acdf_rows_mass(&mix, t, t + 1) * 0x1p-52;
     }
@@ -136,7 +129,6 @@ private:
     std::vector<double> tile_probabilities(const AcdfLocalPoint& source) const {
         std::vector<double> out(boxes_.size());
         if (source.what == ACDF_LOCAL_ROWS) spread_rows(source.by.rows, out);
-        else if (source.what == ACDF_LOCAL_FAST) spread_sums(source, out);
         else spread(boxes_.size() > 1 ? 0 : ACDF_TILE_FLAG, source.mix, source.sum, out);
         const AcdfScaledNormal normal = acdf_local_scaled_normal(&source);
         for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)

@@ -225,7 +225,6 @@ enum class BinTarget {
 enum class LocalShape {
     small,    ///< curves in tiles and a byte a split in rows: knows visibility cells, bounds on weights, and all
               ///< partners
-    fast,     ///< grids in tiles and sums in rows, which are searched by vectors
     halvings, ///< one tree of halvings, with a row of codes for each bin: the least noise for its bytes
     automatic ///< halvings, or small where options ask for what that has not
 };
@@ -271,8 +270,7 @@ struct LocalOptions {
     std::vector<SceneNormal> normals;    ///< only what a scene has; empty: all normals
     double cosine_share = 0.0;           ///< of samples that are taken around the normal instead, in [0, 0.99]
     bool sharing = true;                 ///< bins share tiles; else each has a tree of its own, larger and noisier
-    LocalShape shape =
-        LocalShape::automatic; ///< fast: with sharing, without max_weight, an MIS partner and visibility
+    LocalShape shape = LocalShape::automatic;
     BinTarget bin_target = BinTarget::mean; ///< without sharing
     FitOptions fit;                         ///< of a bin's tree, without sharing
     Partner mis;                            ///< of bins that share tiles, without a cosine_share

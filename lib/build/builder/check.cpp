@@ -104,16 +104,14 @@ void check_bins(const LocalOptions& options) {
     require(options.max_weight == 0.0 ||
                 (options.sharing && !options.visibility.point && options.mis.kind == ACDF_PARTNER_NONE),
             "max_weight is for bins that share tiles, without visibility cells or an MIS partner");
-    require(options.shape == LocalShape::small || options.shape == LocalShape::fast ||
-                options.shape == LocalShape::halvings || options.shape == LocalShape::automatic,
+    require(options.shape == LocalShape::small || options.shape == LocalShape::halvings ||
+                options.shape == LocalShape::automatic,
             "shape is not a LocalShape");
     require(options.shape != LocalShape::halvings || may_be_halvings(options),
             "one tree of halvings is for bins that share it, without max_weight, and beside no "
             "MIS partner but the cosine by the balance heuristic");
     require(options.shape != LocalShape::small || !options.visibility.point,
             "the small shape has no visibility cells");
-    require(options.shape != LocalShape::fast || may_be_fast(options),
-            "the fast shape is for bins that share tiles, without max_weight, visibility cells or an MIS partner");
 }
 
 } // namespace
@@ -122,11 +120,6 @@ bool may_be_halvings(const LocalOptions& options) {
     return options.sharing && options.max_weight == 0.0 &&
            (options.mis.kind == ACDF_PARTNER_NONE ||
             (options.mis.kind == ACDF_PARTNER_COSINE && options.mis.heuristic == ACDF_HEURISTIC_BALANCE));
-}
-
-bool may_be_fast(const LocalOptions& options) {
-    return options.sharing && options.max_weight == 0.0 && !options.visibility.point &&
-           options.mis.kind == ACDF_PARTNER_NONE;
 }
 
 void check(const TargetOptions& options) {

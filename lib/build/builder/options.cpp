@@ -155,14 +155,8 @@ build::SceneVisibility internal(const Visibility& visibility) {
 } // namespace
 
 compress::LocalShape shape_of(const LocalOptions& options) {
-    switch (options.shape) {
-    case LocalShape::small:
-        return compress::LocalShape::small;
-    case LocalShape::fast:
-        return compress::LocalShape::fast;
-    default:
-        return may_be_halvings(options) ? compress::LocalShape::halvings : compress::LocalShape::small;
-    }
+    return options.shape != LocalShape::small && may_be_halvings(options) ? compress::LocalShape::halvings
+                                                                          : compress::LocalShape::small;
 }
 
 build::LocalOptions internal(const LocalOptions& options) {

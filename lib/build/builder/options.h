@@ -18,8 +18,6 @@ build::BrdfFileOptions internal(const BrdfOptions& options);
 build::IndexedOptions internal(const IndexedOptions& options);
 build::TableOptions internal(const TableOptions& options, std::uint64_t bins);
 
-// Whether no option asks for what the fast shape has not.
-bool may_be_fast(const LocalOptions& options);
 /// Whether one tree of halvings has what options ask for.
 bool may_be_halvings(const LocalOptions& options);
 

@@ -161,7 +161,7 @@ Partner Renderer::partner(const EnvironmentOptions& options) const noexcept {
 Partner Renderer::partner(const LocalOptions& options) const noexcept {
     Partner out;
     if (!adds_bsdf_samples || !options.sharing || options.cosine_share > 0.0 || options.max_weight > 0.0 ||
-        options.shape == LocalShape::fast || options.visibility.point)
+        options.visibility.point)
         return out;
     out.kind = ACDF_PARTNER_COSINE;
     out.heuristic = heuristic;

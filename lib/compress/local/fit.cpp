@@ -6,9 +6,7 @@
 #include "compress/local/light.h"
 #include "compress/local/mixed_rows.h"
 #include "compress/local/partner.h"
-#include "compress/local/sums.h"
 #include "compress/local/tile_curves.h"
-#include "compress/local/tile_grids.h"
 #include "compress/local/tile_light.h"
 #include "compress/local/tile_size.h"
 #include "compress/local/whole.h"
@@ -128,8 +126,6 @@ void put_row(const std::vector<std::uint8_t>& row, std::uint32_t number, StoredR
     std::copy(row.begin(), row.end(), out.codes.begin() + std::ptrdiff_t(number * row.size()));
 }
 
-Sums sums_of(const LocalFit& fit) { return {fit.shared.row_count, fit.tiles.tiles.size()}; }
-
 } // namespace
 
 LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const BinLight& light, const LocalSize& size,
@@ -137,8 +133,6 @@ LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const Bin
     : target_(target), bins_(bins), light_(light), size_(size), total_(integral(target)), progress_(progress) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (bins.subdivisions == 0) throw std::invalid_argument("cells of normals cannot share tiles");
-    if (fast() && (partner || std::isfinite(size.max_weight)))
-        throw std::invalid_argument("the fast shape has no partner, and no bound on weights");
     if (partner) beside_.emplace(target, light.points, bins, partner);
     report(0.1);
     rule_ = divide(beside_ ? beside_->excess(target) : target, light.worth, std::min(size.tiles, ACDF_MAX_TILES),
@@ -149,7 +143,6 @@ LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const Bin
     if (whole_tree() == WholeTree::of_tiles) // of all normals the light times its worth adds up to 1
         for (double& worth : worth_of_tiles_) worth += size.whole_worth / total_;
     if (whole_tree() == WholeTree::own) refit_whole(size_.whole_bytes);
-    if (fast()) grids_.emplace(target, tiles_.tiles, worth_of_tiles_);
 }
 
 void LocalFitter::refit_whole(std::uint64_t bytes) { whole_ = fit_whole(target_, bytes); }
@@ -191,20 +184,12 @@ void LocalFitter::outline_curves(std::uint64_t bytes, LocalFit& out) {
         out.shared.tile_roots.push_back(curve < 0 ? ACDF_NO_ROOT : out.tree.offsets[std::size_t(curve)]);
 }
 
-void LocalFitter::outline_grids(std::uint64_t bytes, LocalFit& out) {
-    grids_->choose(bytes);
-    out.tree = whole_.tree;
-    out.shared.grid = grids_->stored(out.shared.tile_roots);
-}
-
 LocalFit LocalFitter::outlined(std::uint64_t inside_bytes) {
     LocalFit out;
     out.tiles = tiles_;
-    if (fast()) outline_grids(inside_bytes, out);
-    else outline_curves(inside_bytes, out);
+    outline_curves(inside_bytes, out);
     report(0.8);
-    out.bright_tiles =
-        find_lights(target_, tiles_, insides(), fast() ? total_ : tile_curves_->total(), light_.worth, rule_);
+    out.bright_tiles = find_lights(target_, tiles_, *curves_.cascade, tile_curves_->total(), light_.worth, rule_);
     out.shared.splits = stored_splits(tiles_, [](const TileTree::Split& split) {
         return std::uint32_t{split.axis == 0 ? ACDF_AXIS_THETA : ACDF_AXIS_PHI} | split.position << 3;
     });
@@ -214,8 +199,7 @@ LocalFit LocalFitter::outlined(std::uint64_t inside_bytes) {
     out.tree.roots.assign(count, ACDF_NO_ROOT);
     for (std::size_t b = 0; b < count; ++b)
         if (bins_.weight[b] > 0.0) out.tree.roots[b] = out.shared.row_count++;
-    if (fast()) out.shared.sums.resize(sums_of(out).bytes());
-    else out.shared.codes.resize(out.shared.row_count * tiles_.splits.size());
+    out.shared.codes.resize(out.shared.row_count * tiles_.splits.size());
     if (beside_) out.records.resize(count, {1.0f, 0.0f});
     return out;
 }
@@ -237,13 +221,12 @@ void LocalFitter::fill_beside(LocalFit& out) const {
 }
 
 void LocalFitter::fill_mixed(LocalFit& out) const {
-    const TileLight light(target_, tiles_, insides(), out.bright_tiles);
+    const TileLight light(target_, tiles_, *curves_.cascade, out.bright_tiles);
     const TileParts parts = mixed_rows(light, bins_, out.bright_tiles);
     const auto costs = [&](std::size_t b) { return std::vector<double>(parts[b].begin(), parts[b].end()); };
     const auto put = [&](std::size_t b, const std::vector<double>& c) {
         const std::uint32_t row = out.tree.roots[b];
-        if (fast()) encode_sums(sums_of(out), row, c, out.shared.sums.data());
-        else if (!std::isfinite(size_.max_weight)) put_row(encode_row(tiles_, c), row, out.shared);
+        if (!std::isfinite(size_.max_weight)) put_row(encode_row(tiles_, c), row, out.shared);
         else put_row(row_above(out, c, light.least(bins_.normals[b], c, size_.max_weight)), row, out.shared);
     };
     fill_rows(costs, put, out);

@@ -7,7 +7,6 @@
 #include "compress/local/normals.h"
 #include "compress/local/partner.h"
 #include "compress/local/tile_curves.h"
-#include "compress/local/tile_grids.h"
 #include "compress/partner.h"
 
 #include <acdf/layout.h>
@@ -20,21 +19,18 @@
 
 namespace acdf::compress {
 
-/// How bins that share tiles are stored: curves in tiles and a byte a split in rows, which know visibility cells
-/// and bounds on weights; grids in tiles and sums in rows, which are searched by vectors (format/SPEC.md,
-/// section 10.6); or one tree of halvings, with a row of codes for each (local/halved/fit.h).
-enum class LocalShape { small, fast, halvings };
+/// How bins that share what they can are stored: curves in tiles and a byte a split in rows, which know visibility
+/// cells and bounds on weights; or one tree of halvings, with a row of codes for each (local/halved/fit.h).
+enum class LocalShape { small, halvings };
 
 /// How large a local environment map becomes.
 struct LocalSize {
     std::uint32_t tiles = 900;           ///< at most so many
-    std::uint64_t inside_bytes = 131072; ///< of curves or grids in tiles, at most (but for the least there must be)
-    LocalShape shape = LocalShape::small; ///< fast: without an MIS partner or a bound on weights
+    std::uint64_t inside_bytes = 131072; ///< of curves in tiles, at most (but for the least there must be)
     /// What the whole environment counts beside all normals together where its tree is made of curves in tiles.
     double whole_worth = 0.0;
-    WholeTree whole =
-        WholeTree::of_tiles;           ///< of the fast shape, and beside an MIS partner, it has curves of its own
-    std::uint64_t whole_bytes = 16384; ///< of those, at most
+    WholeTree whole = WholeTree::of_tiles; ///< beside an MIS partner it has curves of its own
+    std::uint64_t whole_bytes = 16384;     ///< of those, at most
     /// The largest weight over the mean, as far as bins show it; not beside an MIS partner.
     double max_weight = std::numeric_limits<double>::infinity();
 };
@@ -65,7 +61,7 @@ public:
 
     /// Where the environment has curves of its own: at most `bytes` of them, not size.whole_bytes.
     void refit_whole(std::uint64_t bytes);
-    /// A fit whose curves or grids take at most `inside_bytes` (but for the least there must be): all of it, but
+    /// A fit whose curves take at most `inside_bytes` (but for the least there must be): all of it, but
     /// shares are 0, and so is what rows and records hold. It is stored in as many bytes as it will be.
     LocalFit outlined(std::uint64_t inside_bytes);
     /// Shares, rows and records of the fit that was outlined last.
@@ -79,15 +75,9 @@ private:
 
     Curves fit_curves(std::uint64_t bytes);
     void outline_curves(std::uint64_t bytes, LocalFit& out);
-    void outline_grids(std::uint64_t bytes, LocalFit& out);
     void fill_beside(LocalFit& out) const;
     void fill_mixed(LocalFit& out) const;
-    bool fast() const { return size_.shape == LocalShape::fast; }
-    WholeTree whole_tree() const { return fast() || beside_ ? WholeTree::own : size_.whole; }
-    const TileInsides& insides() const {
-        if (fast()) return *grids_;
-        return *curves_.cascade;
-    }
+    WholeTree whole_tree() const { return beside_ ? WholeTree::own : size_.whole; }
     void report(double share) const {
         if (progress_) progress_(share);
     }
@@ -106,8 +96,7 @@ private:
     // Of the fit that was outlined last:
     std::optional<TileCurves> tile_curves_;
     Curves curves_;
-    std::optional<TileGrids> grids_; ///< of the fast shape
-    Fitted whole_;                   ///< the environment, where it has curves of its own
+    Fitted whole_; ///< the environment, where it has curves of its own
 };
 
 LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size,

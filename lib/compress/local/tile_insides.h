@@ -1,5 +1,5 @@
-// What lies in the tiles of a local environment map, as bright tiles and rows of probabilities see it: cells, be
-// they of curves (tile_curves.h) or of grids (tile_grids.h).
+// What lies in the tiles of a local environment map, as bright tiles and rows of probabilities see it: cells of
+// curves (tile_curves.h).
 #pragma once
 
 #include "compress/fit/projection.h"

@@ -204,8 +204,7 @@ std::vector<Chunk> shared_chunks(const StoredRows& rows) {
     append(tiles.bytes, header);
     for (const AcdfSplit& split : rows.splits) append(tiles.bytes, split);
     for (std::uint32_t root : rows.tile_roots) append(tiles.bytes, root);
-    if (rows.grid.empty()) return {std::move(tiles), {ACDF_CHUNK_ROWS, rows.codes}};
-    return {std::move(tiles), {ACDF_CHUNK_SUMS, rows.sums}, {ACDF_CHUNK_GRID, rows.grid}};
+    return {std::move(tiles), {ACDF_CHUNK_ROWS, rows.codes}};
 }
 
 Chunk local_chunk(float cosine_share, const std::vector<AcdfBrightTile>& bright_tiles) {

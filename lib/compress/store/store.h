@@ -65,18 +65,16 @@ EncodedTree encode_tree(const Cascade& cascade, double price = 1e-8,
                         double most_ratio = std::numeric_limits<double>::infinity(),
                         const std::vector<std::uint8_t>& before = {});
 
-/// What the bins of local environments and BRDFs share, and a row for each; of the fast shape of local environments
-/// where it has `grid`.
+/// What the bins of local environments share, and a row for each.
 struct StoredRows {
     std::vector<AcdfSplit> splits;         ///< in preorder
-    std::vector<std::uint32_t> tile_roots; ///< one a tile, in `grid` if it has one; or empty: all tiles are cells
+    std::vector<std::uint32_t> tile_roots; ///< one a tile; or empty: all tiles are cells
     std::vector<std::uint16_t> codebook;   ///< 256
     std::uint32_t row_count = 0;
-    std::vector<std::uint8_t> codes;      ///< row_count x splits
-    std::vector<std::uint8_t> sums, grid; ///< the chunks, instead of `codes`
+    std::vector<std::uint8_t> codes; ///< row_count x splits
 };
 
-/// Chunks TILE and ROWS, or TILE, SUMS and GRID.
+/// Chunks TILE and ROWS.
 std::vector<Chunk> shared_chunks(const StoredRows& rows);
 
 /// Chunk LOCL.

@@ -70,7 +70,6 @@ public:
         else throw std::invalid_argument("the light of a product is an environment or a local environment");
         if (local_.cosine_share > 0.0 || file.partner())
             throw std::invalid_argument("the pdf of a file for an MIS partner is 0 where the partner suffices");
-        if (local_.fast.grid) throw std::invalid_argument("a file of the fast shape has no inverse");
     }
     bool has_cosine() const { return is_local_; }
     void move_to(const float normal[3]) {

@@ -240,8 +240,7 @@ def build_local(
     cosine_share: of samples that are taken around the normal instead, in [0, 0.99].
     sharing: bins share tiles; else each has a tree of its own.
     shape: "halvings", one tree with a row of codes for each bin: the least noise for its bytes; "small", curves in tiles, for
-        max_weight and MIS partners other than the cosine; "fast", which is searched by vectors, and has neither max_weight nor an
-        MIS partner. "auto" makes halvings, or small where options ask for what that has not.
+        max_weight and MIS partners other than the cosine; "auto" makes halvings, or small where options ask for what that has not.
     """
     return open(_acdf.build_local(image, _options({k: v for k, v in locals().items() if k != "image"})))
 

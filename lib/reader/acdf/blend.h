@@ -170,11 +170,6 @@ ACDF_INLINE uint32_t acdf_blend_find_rows(const AcdfBlend* blend, const AcdfMixt
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* The half of a split that holds a square. */
-ACDF_INLINE uint32_t acdf_split_upper(const AcdfSplit* split, const uint32_t* square) {
-    return (uint32_t)(square[split->place & 7u] >= split->place >> 3);
-}
-
 /* Where traversals begin: split 0, or the only tile. */
 ACDF_FN uint32_t acdf_blend_root(const AcdfBlend* blend) {
     return blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
@@ -226,24 +221,6 @@ ACDF_FN uint32_t acdf_blend_find_below(const AcdfBlend* blend, const AcdfMixture
 ACDF_FN uint32_t acdf_blend_find_tile(const AcdfBlend* blend, const AcdfMixture* mix, const uint32_t* square,
                                       AcdfRange* range, AcdfStratum* strata, double* probability) {
     return acdf_blend_find_below(blend, mix, acdf_blend_root(blend), square, range, strata, probability);
-}
-
-/* Samples a cell of the mixture, as acdf_tree_sample does of a tree. Returns its probability, > 0. */
-ACDF_FN double acdf_blend_sample(const AcdfBlend* blend, const AcdfMixture* mix, double* u, AcdfRange* range) {
-    double probability;
-    const uint32_t tile = acdf_blend_sample_tile(blend, mix, u, range, &probability);
-    if (!blend->roots || blend->roots[tile] == ACDF_NO_ROOT) return probability;
-    return acdf_positive(probability * acdf_tree_sample(blend->tree, blend->roots[tile], u, range));
-}
-
-/* Finds the cell of a grid square, as acdf_tree_find does. Returns its probability, 0 where no sample can fall. */
-ACDF_FN double acdf_blend_find(const AcdfBlend* blend, const AcdfMixture* mix, const uint32_t* square,
-                               AcdfRange* range, AcdfStratum* strata) {
-    double probability, inside;
-    const uint32_t tile = acdf_blend_find_tile(blend, mix, square, range, strata, &probability);
-    if (!(probability > 0.0) || !blend->roots || blend->roots[tile] == ACDF_NO_ROOT) return probability;
-    inside = acdf_tree_find(blend->tree, blend->roots[tile], square, range, strata);
-    return inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
 }
 
 #ifdef __cplusplus

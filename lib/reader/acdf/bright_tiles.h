@@ -98,12 +98,6 @@ ACDF_FN double acdf_local_bright_tile_weight(const AcdfLocal* local, const AcdfL
     return acdf_bright_tile_weight(&local->bright_tiles[k], &at);
 }
 
-/* The pairs of bright tiles that a normal may see, a bit each; `facet`: its own, or null. */
-ACDF_INLINE uint32_t acdf_local_seen(const AcdfLocal* local, const AcdfFacet* facet) {
-    if (facet) return facet->seen;
-    return local->bright_tile_count > 0 ? 0xFFFFFFFFu >> (31 - (local->bright_tile_count - 1) / 2) : 0;
-}
-
 /* Two bright tiles, from number k on. */
 ACDF_FN void acdf_local_bright_tile_pair(const AcdfLocal* local, uint32_t k, AcdfBrightTilePair* out) {
     uint32_t i;
@@ -117,15 +111,7 @@ ACDF_FN void acdf_local_bright_tile_pair(const AcdfLocal* local, uint32_t k, Acd
     }
 }
 
-/* Pair k: of tables, or made in `room`. */
-ACDF_INLINE const AcdfBrightTilePair* acdf_local_pair(const AcdfLocal* local, uint32_t k,
-                                                      AcdfBrightTilePair* room) {
-    if (local->tables) return acdf_local_bright_tiles(local->tables) + k;
-    acdf_local_bright_tile_pair(local, 2 * k, room);
-    return room;
-}
-
-/* acdf_cap_weight of light i of two without a quotient, as the fast shape has it; `inverse` is that of the point's
+/* acdf_cap_weight of light i of two without a quotient; `inverse` is that of the point's
  * length. */
 ACDF_INLINE double acdf_pair_weight(const AcdfScaledNormal* at, const AcdfBrightTilePair* pair, uint32_t i,
                                     double inverse) {
@@ -150,40 +136,20 @@ ACDF_INLINE __m128d acdf_pair_weights(const AcdfHorizon* horizon, const AcdfBrig
 }
 #endif
 
-/* The weight of bright tile k in the fast shape, without a branch on it. */
-ACDF_INLINE double acdf_fast_bright_tile_weight(const AcdfLocal* local, const AcdfScaledNormal* at, uint32_t k) {
-    AcdfBrightTilePair room;
-    const AcdfBrightTilePair* pair = acdf_local_pair(local, k / 2, &room);
-#ifdef ACDF_SSE2
-    const uint32_t i = k % 2;
-    const double height = at->normal[0] * pair->direction[0][i] + at->normal[1] * pair->direction[1][i] +
-                          at->normal[2] * pair->direction[2][i];
-    const double radius = pair->radius[i] * at->length, above = height + radius;
-    const double cut = above * above * (pair->quarter[i] * (1.0 / at->length));
-    const __m128d h = _mm_set_sd(height);
-    const __m128d whole = _mm_mul_sd(_mm_set_sd(pair->share[i]), _mm_max_sd(h, _mm_setzero_pd()));
-    const __m128d is_cut = _mm_cmplt_sd(_mm_andnot_pd(_mm_set1_pd(-0.0), h), _mm_set_sd(radius));
-    return _mm_cvtsd_f64(_mm_or_pd(_mm_and_pd(is_cut, _mm_set_sd(cut)), _mm_andnot_pd(is_cut, whole)));
-#else
-    return acdf_pair_weight(at, pair, k % 2, 1.0 / at->length);
-#endif
-}
-
-/* The sum of the weights of pairs, a bit each. */
+/* The sum of the weights of pairs, a bit each, by tables. */
 ACDF_INLINE double acdf_pairs_weight(const AcdfLocal* local, const AcdfScaledNormal* at, uint32_t left) {
     const double inverse = 1.0 / at->length;
-    AcdfBrightTilePair room;
+    const AcdfBrightTilePair* pairs = acdf_local_bright_tiles(local->tables);
 #ifdef ACDF_SSE2
     const AcdfHorizon horizon = acdf_horizon(at);
     __m128d sum = _mm_setzero_pd();
     for (; left; left &= left - 1)
-        sum = _mm_add_pd(sum, acdf_pair_weights(&horizon, acdf_local_pair(local, acdf_lowest_bit(left), &room),
-                                                _mm_set1_pd(inverse)));
+        sum = _mm_add_pd(sum, acdf_pair_weights(&horizon, pairs + acdf_lowest_bit(left), _mm_set1_pd(inverse)));
     return _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
 #else
     double sum[2] = {0.0, 0.0};
     for (; left; left &= left - 1) {
-        const AcdfBrightTilePair* of = acdf_local_pair(local, acdf_lowest_bit(left), &room);
+        const AcdfBrightTilePair* of = pairs + acdf_lowest_bit(left);
         sum[0] += acdf_pair_weight(at, of, 0, inverse);
         sum[1] += acdf_pair_weight(at, of, 1, inverse);
     }

@@ -117,7 +117,6 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
     double p;
-    if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_sample(local, point, u);
     if (point->what == ACDF_LOCAL_ROWS) return acdf_local_rows_sample(local, point, &grid, u);
     if (local->environment.halved) return acdf_environment_halved_sample(&local->environment, u[0], u[1]);
     acdf_sphere_ranges(grid.columns, grid.rows, range);
@@ -144,10 +143,10 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_portal_sample(const AcdfLocal
     return out;
 }
 
-/* acdf_local_sample_at of any shape, and where rows of the fast shape are all there is. */
-ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_sample_at(const AcdfLocal* local,
-                                                                 const AcdfLocalPoint* point, double u0,
-                                                                 double u1) {
+/* Samples a direction; u0 (phi) and u1 (theta) in [0, 1]. Values outside are clamped, NaN counts as 0. The pdf is
+ * in sr^-1; it is 0, and the direction is unset, where the normal is not valid or no light reaches it. */
+ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                             double u0, double u1) {
     AcdfDirectionSample out = {{0.0f, 0.0f, 0.0f}, 0.0f};
     double u[2];
     if (point->what == ACDF_LOCAL_NOTHING) return out;
@@ -164,55 +163,13 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_sample_at(const AcdfLocal
     out.pdf = acdf_local_combined_pdf(local, point, out.direction, out.pdf);
     return acdf_returned(&out);
 }
-/* Samples where rows of the fast shape are all there is. */
-ACDF_INLINE AcdfDirectionSample acdf_local_only_fast_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                            double u0, double u1) {
-    AcdfDirectionSample out;
-    double u[2];
-    u[0] = acdf_unit_interval(u0);
-    u[1] = acdf_unit_interval(u1);
-    out = acdf_local_fast_sample(local, point, u);
-    return acdf_returned(&out);
-}
-ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_fast_sample_at(const AcdfLocal* local,
-                                                                  const AcdfLocalPoint* point, double u0,
-                                                                  double u1) {
-    return acdf_local_only_fast_sample(local, point, u0, u1);
-}
-
-/* Samples a direction; u0 (phi) and u1 (theta) in [0, 1]. Values outside are clamped, NaN counts as 0. The pdf is
- * in sr^-1; it is 0, and the direction is unset, where the normal is not valid or no light reaches it. */
-ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const AcdfLocalPoint* point, double u0,
-                                                 double u1) {
-    return acdf_local_only_fast(local, point) ? acdf_local_fast_sample_at(local, point, u0, u1)
-                                              : acdf_local_any_sample_at(local, point, u0, u1);
-}
-
-/* Samples for a normal of a single call, in any file: through an AcdfLocalPoint. */
-ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_new_sample(const AcdfLocal* local, const float normal[3],
-                                                                  double u0, double u1) {
+/* Samples for a normal of a single call; as acdf_local_sample_at. */
+ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_sample(const AcdfLocal* local, const float normal[3], double u0,
+                                                          double u1) {
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
     return acdf_local_sample_at(local, &point, u0, u1);
 }
-/* Samples for a normal of a single call in the fast shape with tables: the point stays in registers. */
-ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_new_fast_sample(const AcdfLocal* local, const float normal[3],
-                                                                   double u0, double u1) {
-    AcdfLocalPoint point;
-    acdf_local_no_rows(normal, &point);
-    if (local->cosine_share != 0.0 || !local->tables->facets ||
-        !acdf_local_fast_corners(local, point.surface, 1, &point))
-        return acdf_local_any_new_sample(local, normal, u0, u1);
-    acdf_local_fast_sum(local, &point);
-    if (point.what != ACDF_LOCAL_FAST) return acdf_local_any_new_sample(local, normal, u0, u1);
-    return acdf_local_only_fast_sample(local, &point, u0, u1);
-}
-/* Samples for a normal of a single call; as acdf_local_sample_at. */
-ACDF_FN AcdfDirectionSample acdf_local_sample(const AcdfLocal* local, const float normal[3], double u0, double u1) {
-    return local->tables && local->fast.grid ? acdf_local_new_fast_sample(local, normal, u0, u1)
-                                             : acdf_local_any_new_sample(local, normal, u0, u1);
-}
-
 /* Integral of the light above the horizon times the cosine (luminance times sr), interpolated between bins. Where
  * the bins of the normal are not stored, the integral of all light; 0 for normals that are not valid. */
 ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[3]) {

@@ -2,7 +2,6 @@
 #ifndef ACDF_LOCAL_PARTS_H
 #define ACDF_LOCAL_PARTS_H
 
-#include <acdf/fast_rows.h>
 #include <acdf/local_tables.h>
 #include <acdf/normal_rows.h>
 #include <acdf/normals.h>
@@ -11,8 +10,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-struct AcdfLocalVectors;
 
 typedef struct AcdfLocal {
     AcdfBlend blend;             /* blend.tiles is null where each bin has a tree of its own */
@@ -28,25 +25,18 @@ typedef struct AcdfLocal {
     const AcdfPartner* partner;            /* null: to be used alone */
     AcdfVisibilityTable visibility;        /* its header is null where there are no visibility cells */
     AcdfPortalTable portals;               /* its header is null where there are none */
-    AcdfFast fast;                         /* the fast shape: the blend has no rows then, and roots are of grids */
-    const AcdfNormalRows* rows_of_normals; /* one tree of halvings; null: curves or the fast shape */
+    const AcdfNormalRows* rows_of_normals; /* one tree of halvings; null: curves */
 } AcdfLocal;
-
-/* Runtime tables of the fast shape: what they have of its rows. */
-ACDF_FN void acdf_local_use_upper(AcdfLocal* local) {
-    local->fast.upper = (const uint16_t*)(const void*)(acdf_local_words(local->tables) + local->tables->upper);
-    local->fast.upper_ends = acdf_fast_upper_ends(local->fast.ends);
-}
 
 ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {
     if (local->subdivisions > 0) return acdf_octahedral_bins(local->subdivisions, normal, out);
     return acdf_latlong_bins(local->columns, local->rows, normal, out);
 }
 
-/* What serves a normal: nothing, a tree of its own (or the environment's), bright tiles and what bins share, in
- * either shape, or rows of a tree of halvings. Made once for a shading point, it serves all samples there. It
+/* What serves a normal: nothing, a tree of its own (or the environment's), bright tiles and what bins share, or
+ * rows of a tree of halvings. Made once for a shading point, it serves all samples there. It
  * points into the memory of the AcdfLocal that made it: not for one that was opened otherwise, or moved since. */
-enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND, ACDF_LOCAL_FAST, ACDF_LOCAL_ROWS };
+enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND, ACDF_LOCAL_ROWS };
 
 /* Rows of a blend by runtime tables. */
 typedef struct AcdfTabledRows {
@@ -62,14 +52,6 @@ typedef struct AcdfLocalPlace {
     AcdfVisiblePortals portals; /* where it sees any */
 } AcdfLocalPlace;
 
-/* Rows of the fast shape. */
-typedef struct AcdfFastPoint {
-    const AcdfFacet* facet; /* as above */
-    AcdfFastMixture mix;    /* AcdfLocalPoint::mix has the weights, too */
-    double step;            /* 32767 times the mixture's whole a weight */
-    double unit;            /* that of acdf_fast_share, of the sum of all weights */
-} AcdfFastPoint;
-
 typedef struct AcdfLocalPoint {
     uint8_t what;
     uint8_t cells;             /* of visibility that are mixed; 0: the position is not known, or does not matter */
@@ -83,7 +65,6 @@ typedef struct AcdfLocalPoint {
     union {                    /* what serves it has one of these */
         uint32_t root;         /* ACDF_LOCAL_TREE */
         AcdfTabledRows tabled; /* ACDF_LOCAL_BLEND */
-        AcdfFastPoint fast;    /* ACDF_LOCAL_FAST */
         AcdfRowMixture rows;   /* ACDF_LOCAL_ROWS */
     } by;
     AcdfLocalPlace place; /* of ACDF_LOCAL_ROWS in visibility cells */

@@ -2,7 +2,7 @@
 #ifndef ACDF_LOCAL_PDF_H
 #define ACDF_LOCAL_PDF_H
 
-#include <acdf/local_fast.h>
+#include <acdf/local_position.h>
 #include <acdf/row_heights.h>
 
 #ifdef __cplusplus
@@ -152,26 +152,12 @@ ACDF_FN float acdf_local_spot_pdf(const AcdfLocal* local, const AcdfLocalPoint* 
     return p > 0.0 ? acdf_local_cell_pdf(local, &grid, direction, range, p) : 0.0f;
 }
 
-/* The pdf of what rows of the fast shape sample. */
-ACDF_INLINE float acdf_local_fast_pdf(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                      const float direction[3]) {
-    const AcdfGrid grid = acdf_environment_grid(&local->environment);
-    AcdfRange range[2];
-    AcdfFastShare share;
-    uint32_t square[2];
-    if (!acdf_local_square(&grid, direction, square)) return 0.0f;
-    acdf_sphere_ranges(grid.columns, grid.rows, range);
-    share = acdf_local_fast_find(local, point, acdf_local_fast_tile(local, square, range), square, range);
-    return acdf_local_fast_cell_pdf(local, &grid, range, &share);
-}
-
 /* The cell of a grid square that rows, or a tree, sample at a point, which becomes `range`, and its probability: 0
  * where no sample can fall. */
 ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t square[2],
                                     AcdfRange range[2]) {
     const AcdfEnvironment* env = &local->environment;
     AcdfLocalSpot spot = {0, {0, 0}, 0, 1};
-    AcdfFastShare share;
     acdf_sphere_ranges(env->columns, env->rows, range);
     if (point->what == ACDF_LOCAL_NOTHING) return 0.0;
     if (point->what == ACDF_LOCAL_ROWS) {
@@ -188,10 +174,6 @@ ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint
     }
     if (point->what == ACDF_LOCAL_TREE)
         return acdf_tree_locate(env->tree, env->tree_units, point->by.root, square, range);
-    if (point->what == ACDF_LOCAL_FAST) {
-        share = acdf_local_fast_find(local, point, acdf_local_fast_tile(local, square, range), square, range);
-        return share.of / share.all;
-    }
     spot.square[0] = square[0];
     spot.square[1] = square[1];
     if (acdf_local_tabled(local))
@@ -202,7 +184,6 @@ ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint
 /* Of either, in a direction. */
 ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     AcdfLocalSpot spot;
-    if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_pdf(local, point, direction);
     if (point->what == ACDF_LOCAL_NOTHING) return 0.0f;
     if (point->what == ACDF_LOCAL_ROWS) {
         const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -256,29 +237,12 @@ ACDF_FN float acdf_local_combined_pdf(const AcdfLocal* local, const AcdfLocalPoi
     return pdf > 1.17549435e-38 || pdf == 0.0 ? (float)pdf : 1.17549435e-38f;
 }
 
-/* acdf_local_pdf_at of any shape, with portals and the cosine; and where rows of the fast shape are all there is.
- * Each saves only the registers that it needs. */
-ACDF_OUTLINE_ON_CPU float acdf_local_any_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                const float direction[3]) {
+/* Pdf per steradian with which acdf_local_sample_at samples `direction` (unit). */
+ACDF_OUTLINE_ON_CPU float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                            const float direction[3]) {
     if (point->what == ACDF_LOCAL_NOTHING) return 0.0f;
     return acdf_local_combined_pdf(local, point, direction, acdf_local_light_pdf(local, point, direction));
 }
-ACDF_OUTLINE_ON_CPU float acdf_local_fast_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                 const float direction[3]) {
-    return acdf_local_fast_pdf(local, point, direction);
-}
-
-/* Whether a point has no more than rows of the fast shape. */
-ACDF_INLINE int acdf_local_only_fast(const AcdfLocal* local, const AcdfLocalPoint* point) {
-    return point->what == ACDF_LOCAL_FAST && local->cosine_share == 0.0;
-}
-
-/* Pdf per steradian with which acdf_local_sample_at samples `direction` (unit). */
-ACDF_FN float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
-    return acdf_local_only_fast(local, point) ? acdf_local_fast_pdf_at(local, point, direction)
-                                              : acdf_local_any_pdf_at(local, point, direction);
-}
-
 /* The pdf for a normal of a single call, in files of codes that have tables. */
 ACDF_OUTLINE_ON_CPU float acdf_local_new_pdf(const AcdfLocal* local, const float normal[3],
                                              const float direction[3]) {
@@ -295,27 +259,6 @@ ACDF_OUTLINE_ON_CPU float acdf_local_any_new_pdf(const AcdfLocal* local, const f
     acdf_local_at(local, normal, &point);
     return acdf_local_pdf_at(local, &point, direction);
 }
-/* The pdf for a normal of a single call in the fast shape: the point stays in registers. */
-ACDF_OUTLINE_ON_CPU float acdf_local_new_fast_pdf(const AcdfLocal* local, const float normal[3],
-                                                  const float direction[3]) {
-    const AcdfGrid grid = acdf_environment_grid(&local->environment);
-    uint32_t square[2], tile;
-    AcdfLocalPoint point;
-    AcdfRange range[2];
-    AcdfFastShare share;
-    if (!acdf_local_square(&grid, direction, square) || local->cosine_share != 0.0)
-        return acdf_local_any_new_pdf(local, normal, direction);
-    acdf_sphere_ranges(grid.columns, grid.rows, range);
-    tile = acdf_local_fast_tile(local, square, range);
-    ACDF_PREFETCH(acdf_local_tile(local->tables, tile));
-    acdf_local_no_rows(normal, &point);
-    if (!local->tables->facets || !acdf_local_fast_corners(local, point.surface, 0, &point))
-        return acdf_local_any_new_pdf(local, normal, direction);
-    acdf_local_fast_sum(local, &point);
-    if (point.what != ACDF_LOCAL_FAST) return 0.0f;
-    share = acdf_local_fast_find(local, &point, tile, square, range);
-    return acdf_local_fast_cell_pdf(local, &grid, range, &share);
-}
 /* The pdf for a normal of a single call by rows of halvings. */
 ACDF_OUTLINE_ON_CPU float acdf_local_new_rows_pdf(const AcdfLocal* local, const float normal[3],
                                                   const float direction[3]) {
@@ -330,9 +273,7 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_rows_pdf(const AcdfLocal* local, const 
 /* Pdf per steradian with which acdf_local_sample samples `direction` (unit) for that normal. */
 ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {
     if (local->rows_of_normals) return acdf_local_new_rows_pdf(local, normal, direction);
-    if (local->tables)
-        return local->fast.grid ? acdf_local_new_fast_pdf(local, normal, direction)
-                                : acdf_local_new_pdf(local, normal, direction);
+    if (local->tables) return acdf_local_new_pdf(local, normal, direction);
     return acdf_local_any_new_pdf(local, normal, direction);
 }
 

@@ -2,7 +2,8 @@
 #ifndef ACDF_LOCAL_POINT_H
 #define ACDF_LOCAL_POINT_H
 
-#include <acdf/local_fast_point.h>
+#include <acdf/bright_tiles.h>
+#include <acdf/local_corners.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -120,10 +121,6 @@ ACDF_INLINE void acdf_local_rows_at(const AcdfLocal* local, const float normal[3
 ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     if (local->rows_of_normals) {
         acdf_local_rows_at(local, normal, out);
-        return;
-    }
-    if (local->fast.grid) {
-        if (acdf_local_begin_fast(local, normal, out)) acdf_local_fast_sum(local, out);
         return;
     }
     if (acdf_local_begin(local, normal, out)) acdf_local_sum(local, out);

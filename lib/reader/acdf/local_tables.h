@@ -8,7 +8,6 @@
 #define ACDF_LOCAL_TABLES_H
 
 #include <acdf/cells.h>
-#include <acdf/tile_blocks.h>
 #include <acdf/tile_tables.h>
 
 #ifdef __cplusplus
@@ -38,13 +37,10 @@ typedef struct AcdfFacet {
     double whole[3];  /* sum of share times direction of the bright tiles that are above the horizons of all, by
                          pairs */
     uint32_t others;  /* bit k: of pair k of bright tiles one is neither above the horizons of all nor below */
-    uint32_t seen;    /* bit k: of pair k some normal may see one */
     double length[3]; /* of corners from the middle, in steps of an edge */
     float share[3];   /* of their bins; 0 also where that is not stored */
     uint32_t row[3];  /* of the bins */
 } AcdfFacet;
-
-enum { ACDF_MOST_GROUP_HEARTS = 448 }; /* files of the fast shape with more groups have no `group_hearts` */
 
 /* Offsets in words from the start of this struct, which the arrays follow. */
 typedef struct AcdfLocalTables {
@@ -58,17 +54,11 @@ typedef struct AcdfLocalTables {
     uint32_t facets;       /* AcdfFacet, n^2 of each octant, of acdf_local_facet; 0: the octahedron is too large, or
                               there is none */
     uint32_t bright_tiles; /* AcdfBrightTilePair, one two bright tiles */
-    uint32_t middles;      /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and of the fast shape its
-                              solid angle, else 0 */
+    uint32_t middles;      /* f32, 3 a tile: the direction (unit to 1e-6) of its middle */
     uint32_t hearts;       /* u16 a split of each row, numbered and counted as in `tiles`: the tile that is reached
                               from it by the brighter halves; 0: there is no room */
     uint32_t octahedral;   /* whether cells lie on the octahedral square */
-    uint32_t upper;        /* of the fast shape: u16, as AcdfFast has them */
-    AcdfTileBlocks blocks; /* of the fast shape */
-    uint32_t group_hearts; /* of the fast shape: u8, of each row and group its tile that gets most, as many of a row
-                              as it has ends; 0: there are more than cuts have */
-    uint32_t group_angles; /* f32: the solid angle of each group, and 0 up to as many as a row has ends */
-    uint32_t reserved[2];
+    uint32_t reserved;
 } AcdfLocalTables;
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalTables) % 64 == 0); /* arrays are aligned */
 
@@ -88,13 +78,7 @@ ACDF_INLINE const AcdfBrightTilePair* acdf_local_bright_tiles(const AcdfLocalTab
     return (const AcdfBrightTilePair*)(const void*)(acdf_local_words(tables) + tables->bright_tiles);
 }
 ACDF_INLINE const float* acdf_local_middle(const AcdfLocalTables* tables, uint32_t tile) {
-    return (const float*)(const void*)(acdf_local_words(tables) + tables->middles) + 4 * (size_t)tile;
-}
-ACDF_INLINE const uint8_t* acdf_local_group_hearts(const AcdfLocalTables* tables, uint32_t row, uint32_t ends) {
-    return (const uint8_t*)(const void*)(acdf_local_words(tables) + tables->group_hearts) + (size_t)row * ends;
-}
-ACDF_INLINE const float* acdf_local_group_angles(const AcdfLocalTables* tables) {
-    return (const float*)(const void*)(acdf_local_words(tables) + tables->group_angles);
+    return (const float*)(const void*)(acdf_local_words(tables) + tables->middles) + 3 * (size_t)tile;
 }
 /* Of the row whose codes these are, one a split. */
 ACDF_INLINE const uint16_t* acdf_local_hearts(const AcdfLocalTables* tables, const uint8_t* codes) {

@@ -76,10 +76,6 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
     ACDF_MOVE(AcdfPortalMap, local->portals.maps);
     ACDF_MOVE(uint32_t, local->portals.sums);
     ACDF_MOVE(uint8_t, local->portals.rows);
-    ACDF_MOVE(uint8_t, local->fast.grid);
-    ACDF_MOVE(uint16_t, local->fast.groups);
-    ACDF_MOVE(uint8_t, local->fast.tiles);
-    ACDF_MOVE(uint16_t, local->fast.upper);
     ACDF_MOVE(AcdfNormalRows, local->rows_of_normals);
 }
 

@@ -1,5 +1,5 @@
 /* Local environment maps and BRDFs on one tree of halvings: at its top each stored normal or view has a row of
- * codes of its own, below that all share (SPEC.md §10.7). Those between sample from a mixture of rows. Part of
+ * codes of its own, below that all share (SPEC.md §10.6). Those between sample from a mixture of rows. Part of
  * acdf/local.h and acdf/brdf.h.
  *
  * Where codes of rows end there are tiles, numbered in the order of the tree. Of each row the steps of random

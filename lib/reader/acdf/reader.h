@@ -30,7 +30,6 @@ struct AcdfFile;
 #ifndef ACDF_ENVIRONMENT_ONLY
 struct AcdfMove;
 struct AcdfBlend;
-struct AcdfFast;
 #endif
 
 namespace acdf {
@@ -151,8 +150,6 @@ public:
     int memory(AcdfMove* moves) const noexcept;
     /// What bins share; `tiles` is null where each has a tree of its own.
     const AcdfBlend& blend() const noexcept;
-    /// Of the fast shape of local environments; its pointers are null where a file has another one.
-    const AcdfFast& fast() const noexcept;
 #endif
 
 private:

@@ -24,14 +24,12 @@ typedef struct AcdfTileRecord {
     uint16_t depth;                 /* how many steps lead to it */
     uint16_t light;                 /* the number of its light and 1; 0: it has none */
     uint16_t step[ACDF_TILE_STEPS]; /* 2 * split, and 1 where it leads to the upper half; where there are more of
-                                       them, the number of the first one in `paths`, lower half first;
-                                       of the fast shape: shifts and counts of its grid */
+                                       them, the number of the first one in `paths`, lower half first */
 } AcdfTileRecord;
 ACDF_STATIC_ASSERT(sizeof(AcdfTileRecord) == 64);
 
 /* Offsets are in words, from the start of all tables. Splits are numbered anew: those of the upper levels stand in
- * one cache line of a row, those below them line by line. Files of the fast shape, whose splits are not traversed
- * by tables, have `tiles` alone. */
+ * one cache line of a row, those below them line by line. */
 typedef struct AcdfTileTables {
     uint32_t codes;    /* f64, 256 pairs: what parts a code gives to the lower and to the upper half of a split */
     uint32_t splits;   /* AcdfSplit, `stride` of them; some are none */

@@ -124,8 +124,8 @@ bool has_rows(u32 kind) { return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BR
 
 // Whether a known chunk may be in files of a kind.
 bool belongs(int known, u32 kind) {
-    if (known == chunk_local || known == chunk_visibility || known == chunk_portals || known == chunk_sums ||
-        known == chunk_grid || known == chunk_tiles || known == chunk_rows)
+    if (known == chunk_local || known == chunk_visibility || known == chunk_portals || known == chunk_tiles ||
+        known == chunk_rows)
         return kind == ACDF_KIND_LOCAL;
     if (known == chunk_normals) return has_rows(kind);
     if (known == chunk_views) return kind == ACDF_KIND_BRDF;

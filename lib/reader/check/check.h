@@ -8,7 +8,7 @@
 #include <acdf/halvings.h>
 #include <acdf/reader.h>
 #ifndef ACDF_ENVIRONMENT_ONLY
-#include <acdf/fast.h>
+#include <acdf/blend.h>
 #include <acdf/portals.h>
 #endif
 
@@ -98,7 +98,6 @@ struct Parts {
     const AcdfSplit* splits = nullptr;            ///< tiles->tile_count - 1
     const std::uint32_t* tile_roots = nullptr;    ///< tiles->tile_count, or null: all tiles are cells
     const std::uint8_t* rows = nullptr;           ///< tiles->row_count rows of tiles->tile_count - 1 codes
-    AcdfFast fast = {};                           ///< of the fast shape, which has no rows; else null
     const AcdfLocalHeader* local = nullptr;       ///< of local environments
     const AcdfBrightTile* bright_tiles = nullptr; ///< local->bright_tile_count
     AcdfVisibilityTable visibility = {};          ///< of local environments; its header is null where absent

@@ -66,8 +66,6 @@ enum KnownChunk {
     chunk_partner,
     chunk_visibility,
     chunk_portals,
-    chunk_sums,
-    chunk_grid,
     chunk_halvings,
     chunk_maps,
     chunk_normals,

@@ -16,10 +16,8 @@ void check_local(const Payloads& payloads, const TileBoxes& boxes, Report& repor
 void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Parts& parts) noexcept {
     const Payload &description = payloads.of[chunk_description], &bins = payloads.of[chunk_bins];
     TileBoxes boxes;
-    const bool fast = kind == ACDF_KIND_LOCAL && (payloads.of[chunk_sums].data || payloads.of[chunk_grid].data);
     if (kind == ACDF_KIND_LOCAL) // else rule 3013
-        check_tiles(payloads.of[chunk_tiles], payloads.of[chunk_rows], fast, report, parts, boxes);
-    if (fast && !report.stopped()) check_fast(payloads, boxes, report, parts);
+        check_tiles(payloads.of[chunk_tiles], payloads.of[chunk_rows], report, parts, boxes);
     const bool tiles_ok = parts.tiles || !boxes.given; // else bins could mean anything
     if (tiles_ok && !report.stopped()) check_tree(bins, payloads.of[chunk_tree], kind, boxes, report, parts);
     if (report.stopped()) return;

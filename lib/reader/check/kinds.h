@@ -15,7 +15,6 @@ struct TileBox {
 struct TileBoxes {
     TileBox* of = nullptr;
     bool given = false; ///< there is a TILE, right or wrong
-    bool fast = false;  ///< of the fast shape: roots are no offsets in TREE
     Payload roots;      ///< the part of TILE with the roots of tiles
 
     TileBoxes() = default;
@@ -28,11 +27,8 @@ struct TileBoxes {
 void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Parts& parts) noexcept;
 
 /// TILE and ROWS; needs parts.description. Sets parts.tiles and what belongs to it, and `boxes`, if they are right.
-/// `fast`: there are no ROWS, and roots are no offsets in TREE (check_fast).
-void check_tiles(const Payload& tiles, const Payload& rows, bool fast, Report& report, Parts& parts,
+void check_tiles(const Payload& tiles, const Payload& rows, Report& report, Parts& parts,
                  TileBoxes& boxes) noexcept;
-/// SUMS and GRID, which come beside TILE; needs what check_tiles sets. Sets parts.fast if they are right.
-void check_fast(const Payloads& payloads, const TileBoxes& boxes, Report& report, Parts& parts) noexcept;
 /// BINS and TREE; needs parts.description and, where there are tiles, those. Sets parts.bins, parts.tree.
 void check_tree(const Payload& bins, const Payload& tree, std::uint32_t kind, const TileBoxes& boxes,
                 Report& report, Parts& parts) noexcept;

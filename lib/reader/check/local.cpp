@@ -102,12 +102,12 @@ u32 path_to(const AcdfBrightTile& light, const Parts& parts, Step path[ACDF_MAX_
 }
 
 // Whether a row gives nothing to a bright tile, by the splits on its path.
-struct DarkBySplits {
+struct DarkRows {
     const Parts& parts;
     Step path[ACDF_MAX_SPLITS_DEEP];
     u32 steps;
 
-    DarkBySplits(const Parts& of, const AcdfBrightTile& light) : parts(of), steps(path_to(light, of, path)) {}
+    DarkRows(const Parts& of, const AcdfBrightTile& light) : parts(of), steps(path_to(light, of, path)) {}
     bool in(u32 row) const {
         const u8* codes = parts.rows + u64{row} * (parts.tiles->tile_count - 1);
         for (u32 s = 0; s < steps; ++s)
@@ -116,30 +116,11 @@ struct DarkBySplits {
     }
 };
 
-// The same by the sums of the fast shape.
-struct DarkBySums {
-    const Parts& parts;
-    u32 tile;
-
-    DarkBySums(const Parts& of, const AcdfBrightTile& light) : parts(of), tile(light.tile) {}
-    template <class Value>
-    static bool has_none(const Value* ends, u32 i) {
-        return ends[i] == (i > 0 ? ends[i - 1] : 0);
-    }
-    bool in(u32 row) const {
-        const AcdfFast& fast = parts.fast;
-        const u32 first = tile & ~(ACDF_FAST_GROUP - 1);
-        return has_none(fast.groups + u64{row} * fast.ends, tile / ACDF_FAST_GROUP) ||
-               has_none(fast.tiles + u64{row} * fast.stride + first, tile - first);
-    }
-};
-
 // Light is sampled as a bright tile or in the mixture, but not both.
-template <class Dark>
 void check_bright_tile_rows(const Payload& payload, Report& report, const Parts& parts) {
     const u32 bins = parts.bins ? parts.description->bin_count : 0;
     for (u32 i = 0; i < parts.local->bright_tile_count && !report.stopped(); ++i) {
-        const Dark dark(parts, parts.bright_tiles[i]);
+        const DarkRows dark(parts, parts.bright_tiles[i]);
         for (u32 b = 0; b < bins; ++b) {
             if (parts.bins[b].root >= parts.tiles->row_count || !(parts.bins[b].share > 0.0f)) continue;
             if (dark.in(parts.bins[b].root)) continue;
@@ -172,8 +153,7 @@ void check_local_kind(const Payload& description, const Payload& payload, const 
     parts.bright_tiles = reinterpret_cast<const AcdfBrightTile*>(payload.data + sizeof *header);
     if (parts.tiles || !boxes.given) check_bright_tiles(payload, boxes, report, parts); // else reported for TILE
     if (report.verdict().errors != errors) return;
-    if (parts.rows) check_bright_tile_rows<DarkBySplits>(payload, report, parts);
-    if (parts.fast.grid) check_bright_tile_rows<DarkBySums>(payload, report, parts);
+    if (parts.rows) check_bright_tile_rows(payload, report, parts);
 }
 
 } // namespace acdf

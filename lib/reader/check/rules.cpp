@@ -113,15 +113,7 @@ const Rule rules[] = {
      "A split is on axis 0 or 1, its position strictly inside the box that it divides."},
     {6024, error, "tile-root", "The root of a tile is the start of a curve, or FFFFFFFF."},
     {6025, error, "rows", "ROWS comes with TILE, and holds `row_count` rows of a byte a split."},
-    {6026, error, "bin-row", "The row of a bin is one of ROWS, SUMS or NORM, whichever is there, or FFFFFFFF."},
-    {6027, error, "fast-shape",
-     "SUMS and GRID come together, with TILE and roots of its tiles, and without ROWS, PLAC and PORT."},
-    {6028, error, "sums",
-     "SUMS has `row_count` rows. Ends of clusters never decrease up to 32767, those of the tiles of a cluster up "
-     "to 255, and nothing behind the last cluster and tile has a share."},
-    {6029, error, "grid",
-     "GRID has the grid of each tile at its root, without gaps, with shifts of at most 30 and 1 to 64 cells an "
-     "axis, then 64 zero bytes. Ends never decrease up to 255."},
+    {6026, error, "bin-row", "The row of a bin is one of ROWS or NORM, whichever is there, or FFFFFFFF."},
 
     {6030, error, "halvings",
      "HALV is as long as its counts say, codes have 2 to 12 bits, and its reserved fields are zero."},

@@ -130,9 +130,8 @@ bool find_boxes(const Tiles& tiles, const Parts& parts, TileBoxes& boxes, Report
 
 } // namespace
 
-void check_tiles(const Payload& payload, const Payload& rows, bool fast, Report& report, Parts& parts,
+void check_tiles(const Payload& payload, const Payload& rows, Report& report, Parts& parts,
                  TileBoxes& boxes) noexcept {
-    boxes.fast = fast;
     if (!payload.data) {
         if (rows.data) report.add(6025, rows.at(0), "there are rows, but no tiles");
         return;
@@ -144,13 +143,13 @@ void check_tiles(const Payload& payload, const Payload& rows, bool fast, Report&
     const Tiles tiles{payload, header, reinterpret_cast<const AcdfSplit*>(payload.data + sizeof header)};
     const u64 size = u64{header.row_count} * (header.tile_count - 1);
     const bool rows_ok = rows.data && rows.size == size;
-    if (!rows_ok && !fast)
+    if (!rows_ok)
         report.add(6025, rows.data ? rows.at(0) : payload.at(0), "ROWS has %llu bytes instead of %llu",
                    static_cast<ull>(rows.size), static_cast<ull>(size));
     if (report.stopped() || !find_boxes(tiles, parts, boxes, report)) return;
     parts.tiles = &header;
     parts.splits = tiles.splits;
-    parts.rows = rows_ok && !fast ? rows.data : nullptr;
+    parts.rows = rows_ok ? rows.data : nullptr;
     if (header.root_count == 0) return;
     parts.tile_roots = reinterpret_cast<const u32*>(tiles.splits + (header.tile_count - 1));
     const u64 at = sizeof header + u64{header.tile_count - 1} * sizeof(AcdfSplit);

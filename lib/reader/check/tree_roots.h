@@ -38,9 +38,7 @@ public:
         : tree_(tree), indexed_(tree.kind == ACDF_KIND_LOCAL || tree.kind == ACDF_KIND_BRDF),
           whole_(tree.kind == ACDF_KIND_LOCAL ||
                  (indexed_ && tree.parts.tiles && tree.parts.tiles->root_count == 0)),
-          count_(tree.tiles.fast    ? 0
-                 : tree.parts.tiles ? tree.parts.tiles->root_count
-                                    : tree.parts.description->bin_count) {}
+          count_(tree.parts.tiles ? tree.parts.tiles->root_count : tree.parts.description->bin_count) {}
 
     /// False behind the last one.
     bool next(TreeRoot& root) {

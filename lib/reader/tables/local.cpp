@@ -3,7 +3,6 @@
 #include "memory.h"
 #include "tables/sides.h"
 #include "tables/squares.h"
-#include "tables/tile_blocks.h"
 #include "tables/tiles.h"
 
 #include <acdf/box_middle.h>
@@ -173,7 +172,6 @@ void place_lights_of(const AcdfLocal& local, const double (*corner)[3], AcdfFace
         const u32 end = std::min(k + 2, local.bright_tile_count);
         int side[2] = {-1, -1};
         for (u32 i = k; i < end; ++i) side[i - k] = side_of(local.bright_tiles[i], corner);
-        if (side[0] >= 0 || side[1] >= 0) facet.seen |= 1u << k / 2;
         if (side[0] == 0 || side[1] == 0) {
             facet.others |= 1u << k / 2;
             continue;
@@ -223,71 +221,12 @@ void place_lights(const AcdfLocal& local, AcdfBrightTilePair* out) {
     for (u32 k = 0; k < local.bright_tile_count; k += 2) acdf_local_bright_tile_pair(&local, k, out++);
 }
 
-// Of the fast shape, in place of the way to a tile: the shifts and counts of its grid.
-void place_grids(const AcdfLocal& local, const AcdfLocalTables& tables) {
-    for (u32 tile = 0; tile < local.blend.tiles->tile_count; ++tile) {
-        auto& record = const_cast<AcdfTileRecord&>(*acdf_local_tile(&tables, tile));
-        AcdfRange range[2];
-        acdf_tile_range(&record, range);
-        const AcdfFastGrid grid = acdf_fast_grid(&local.fast, record.root, range);
-        for (u32 axis = 0; axis < 2; ++axis) {
-            record.step[axis] = static_cast<std::uint16_t>(grid.shift[axis]);
-            record.step[2 + axis] = static_cast<std::uint16_t>(grid.count[axis]);
-        }
-    }
-}
-
-// Of the fast shape, of each row every sixteenth end of its groups.
-std::size_t upper_words(const AcdfLocal& local) {
-    return whole_lines((std::size_t{local.blend.tiles->row_count} * acdf_fast_upper_ends(local.fast.ends) + 1) / 2);
-}
-
-void place_upper(const AcdfLocal& local, std::uint16_t* out) {
-    const u32 count = acdf_fast_upper_ends(local.fast.ends);
-    for (u32 row = 0; row < local.blend.tiles->row_count; ++row, out += count) {
-        const std::uint16_t* const ends = local.fast.groups + std::size_t{row} * local.fast.ends;
-        for (u32 i = 0; i < count; ++i) out[i] = ends[std::min(16 * i + 15, local.fast.ends - 1)];
-    }
-}
-
-// Of each tile the direction of its middle, and of the fast shape its solid angle.
+// Of each tile the direction of its middle.
 void place_middles(const AcdfLocal& local, const AcdfLocalTables& tables, float* out) {
-    const AcdfGrid grid = acdf_environment_grid(&local.environment);
-    for (u32 tile = 0; tile < local.blend.tiles->tile_count; ++tile, out += 4) {
+    for (u32 tile = 0; tile < local.blend.tiles->tile_count; ++tile, out += 3) {
         const AcdfTileRecord& record = *acdf_local_tile(&tables, tile);
         const u32 box[2][2] = {{record.high[0], record.low[0]}, {record.high[1], record.low[1]}};
         acdf_box_middle(&local, box, out);
-        if (!local.fast.grid) continue; // products divide the small shape by the solid angles of its splits
-        AcdfRange range[2];
-        acdf_tile_range(&record, range);
-        range[0].tilt = range[1].tilt = 0.0;
-        out[3] = static_cast<float>(acdf_grid_solid_angle(&grid, range));
-    }
-}
-
-// Of the fast shape, for cuts: which tile of each group gets most of a row, and how large groups are.
-std::size_t group_heart_words(const AcdfLocal& local) {
-    if (!local.fast.grid || local.fast.ends > ACDF_MOST_GROUP_HEARTS) return 0;
-    return whole_lines(std::size_t{local.blend.tiles->row_count} * local.fast.ends / 4);
-}
-
-std::uint8_t brightest(const std::uint8_t* ends) {
-    int most = -1, found = 0;
-    for (int i = 0, before = 0; i < int{ACDF_FAST_GROUP}; before = ends[i++])
-        if (ends[i] - before > most) {
-            most = ends[i] - before;
-            found = i;
-        }
-    return static_cast<std::uint8_t>(found);
-}
-
-void place_groups(const AcdfLocal& local, const AcdfLocalTables& tables, std::uint8_t* hearts, float* angles) {
-    const u32 tile_count = local.blend.tiles->tile_count, groups = acdf_fast_group_count(tile_count);
-    for (u32 tile = 0; tile < tile_count; ++tile)
-        angles[tile / ACDF_FAST_GROUP] += acdf_local_middle(&tables, tile)[3];
-    for (u32 row = 0; row < local.blend.tiles->row_count; ++row, hearts += local.fast.ends) {
-        const std::uint8_t* const ends = local.fast.tiles + std::size_t{row} * local.fast.stride;
-        for (u32 group = 0; group < groups; ++group) hearts[group] = brightest(ends + ACDF_FAST_GROUP * group);
     }
 }
 
@@ -299,21 +238,16 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     const bool latlong = env.parameterization == ACDF_PARAM_LATLONG;
     const std::size_t heights = latlong ? whole_lines(2 * (std::size_t{env.rows} + 1)) : 0;
     std::size_t at = sizeof(AcdfLocalTables) / 4;
-    TileTablesMaker tiles(local.blend, env.columns, env.rows, !local.fast.grid);
+    TileTablesMaker tiles(local.blend, env.columns, env.rows);
     if (!tiles.make()) return nullptr;
     const std::size_t bright_tiles = whole_lines((std::max(local.bright_tile_count, 1u) + 1) / 2 *
                                                  sizeof(AcdfBrightTilePair) / 4),
                       facets = facet_words(local);
-    const std::size_t group_hearts = group_heart_words(local), group_angles = whole_lines(local.fast.ends);
-    const std::size_t groups = group_hearts > 0 ? group_hearts + group_angles : 0;
-    const std::size_t middles = whole_lines(4 * std::size_t{local.blend.tiles->tile_count});
-    TileBlocksMaker blocks;
-    if (local.fast.grid && !blocks.make(local.blend, env.columns, env.rows)) return nullptr;
-    const std::size_t upper = local.fast.grid ? upper_words(local) + blocks.words() : 0;
-    std::size_t words = at + tiles.words() + heights + bright_tiles + facets + middles + upper + groups;
+    const std::size_t middles = whole_lines(3 * std::size_t{local.blend.tiles->tile_count});
+    std::size_t words = at + tiles.words() + heights + bright_tiles + facets + middles;
     if (4 * words > most_bytes) return nullptr;
     PiecesMaker pieces(local, tree_units, most_bytes - 4 * words);
-    const bool small = !local.fast.grid && pieces.make();
+    const bool small = pieces.make();
     if (small) words += pieces.words();
     std::size_t hearts = tiles.heart_words();
     if (hearts > 0 && (4 * (words + hearts) > most_bytes || !tiles.prepare_hearts())) hearts = 0;
@@ -325,7 +259,6 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     tables->words = static_cast<u32>(words);
     tables->octahedral = !latlong;
     at = tiles.place(out, at, tables->tiles);
-    if (local.fast.grid) place_grids(local, *tables);
     for (u32 i = 0; i < local.bright_tile_count; ++i)
         reinterpret_cast<AcdfTileRecord*>(out + tables->tiles.tiles)[local.bright_tiles[i].tile].light =
             static_cast<std::uint16_t>(i + 1);
@@ -345,18 +278,6 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     tables->middles = static_cast<u32>(at);
     place_middles(local, *tables, reinterpret_cast<float*>(out + at));
     at += middles;
-    if (upper > 0) {
-        tables->upper = static_cast<u32>(at);
-        place_upper(local, reinterpret_cast<std::uint16_t*>(out + at));
-        at = blocks.place(out, at + upper_words(local), tables->blocks);
-    }
-    if (groups > 0) {
-        tables->group_hearts = static_cast<u32>(at);
-        tables->group_angles = static_cast<u32>(at + group_hearts);
-        place_groups(local, *tables, reinterpret_cast<std::uint8_t*>(out + at),
-                     reinterpret_cast<float*>(out + at + group_hearts));
-        at += groups;
-    }
     if (hearts > 0) {
         tables->hearts = static_cast<u32>(at);
         tiles.place_hearts(reinterpret_cast<std::uint16_t*>(out + at));

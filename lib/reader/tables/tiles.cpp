@@ -14,14 +14,13 @@ constexpr std::size_t kLine = 64; // bytes
 
 } // namespace
 
-TileTablesMaker::TileTablesMaker(const AcdfBlend& blend, u32 columns, u32 rows, bool walked) noexcept
-    : blend_(blend), end_{columns, rows}, walked_(walked) {}
+TileTablesMaker::TileTablesMaker(const AcdfBlend& blend, u32 columns, u32 rows) noexcept
+    : blend_(blend), end_{columns, rows} {}
 
 bool TileTablesMaker::make() noexcept {
     const std::size_t tiles = blend_.tiles->tile_count;
-    if ((walked_ && !arrange()) || !tiles_.add(tiles, {})) return false;
+    if (!arrange() || !tiles_.add(tiles, {})) return false;
     follow(acdf_blend_root(&blend_), {{0, 0}, {end_[0], end_[1]}}, 0);
-    if (!walked_) return true;
     bits_ = GridBits(end_, tiles);
     if (!grid_.add(bits_.count(), 0)) return false;
     divide(blend_, acdf_blend_root(&blend_), bits_.all(), bits_.shift,
@@ -71,7 +70,6 @@ void TileTablesMaker::follow(u32 node, const Box& box, u32 depth) {
         std::copy_n(box.low, 2, tile.low);
         std::copy_n(box.high, 2, tile.high);
         tile.root = blend_.roots ? blend_.roots[node & ~ACDF_TILE_FLAG] : ACDF_NO_ROOT;
-        if (!walked_) return;
         tile.depth = static_cast<std::uint16_t>(depth);
         if (depth <= ACDF_TILE_STEPS) {
             std::copy_n(way_, depth, tile.step);
@@ -83,7 +81,7 @@ void TileTablesMaker::follow(u32 node, const Box& box, u32 depth) {
         return;
     }
     const AcdfSplit& split = blend_.splits[node];
-    const u32 axis = split.place & 7u, number = walked_ ? numbers_[node] : 0u;
+    const u32 axis = split.place & 7u, number = numbers_[node];
     Box half = box;
     half.high[axis] = split.place >> 3;
     way_[depth] = static_cast<std::uint16_t>(2 * number);
@@ -112,17 +110,12 @@ std::size_t TileTablesMaker::row_words() const noexcept {
 std::size_t TileTablesMaker::split_words() const noexcept { return 2 * (stride() + kLine); }
 
 std::size_t TileTablesMaker::words() const noexcept {
-    if (!walked_) return whole_lines(tiles_.bytes() / 4);
     return whole_lines(4 * kCodes) + split_words() + row_words() + whole_lines(tiles_.bytes() / 4) +
            whole_lines((paths_.bytes() + 3) / 4) + whole_lines((grid_.bytes() + 3) / 4);
 }
 
 std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& out) const noexcept {
     const std::size_t splits = blend_.tiles->tile_count - 1;
-    if (!walked_) {
-        out.tiles = copy_lines(tiles_, words, at);
-        return at;
-    }
     out.codes = static_cast<u32>(at);
     auto* const codes = reinterpret_cast<double*>(words + at);
     for (std::size_t i = 0; i < kCodes; ++i) { // as acdf_blend_find_rows reckons

@@ -13,9 +13,8 @@ namespace acdf {
 
 class TileTablesMaker {
 public:
-    /// Positions on the axes run to columns and rows. Where the splits are not traversed there are records of tiles
-    /// alone, without the way to them.
-    TileTablesMaker(const AcdfBlend& blend, std::uint32_t columns, std::uint32_t rows, bool walked) noexcept;
+    /// Positions on the axes run to columns and rows.
+    TileTablesMaker(const AcdfBlend& blend, std::uint32_t columns, std::uint32_t rows) noexcept;
 
     /// False where memory fails, and where there are too many splits.
     bool make() noexcept;
@@ -45,7 +44,6 @@ private:
 
     AcdfBlend blend_;
     std::uint32_t end_[2];
-    bool walked_;
     GridBits bits_;
     std::uint16_t way_[ACDF_MAX_SPLITS_DEEP] = {};
     std::size_t used_ = 0; // numbers of splits

@@ -4,7 +4,6 @@
 #include "memory.h"
 #include "shader/tables/walk_cells.h"
 #include "shader/tables/walk_maps.h"
-#include "shader/tables/walk_tiles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,7 +102,6 @@ private:
     bool failed_ = false;
     WalkParts parts_;
     Growable<u32> bins_, views_, light_links_, tree_links_;
-    WalkTiles tiles_;
     WalkMaps maps_;
     u32 root_ = ACDF_WALK_NONE, mixture_ = ACDF_WALK_NONE;
 };
@@ -312,11 +310,7 @@ bool WalkMaker::make() {
         return !failed_ && maps_.make(indexed_);
     }
     if (!brdf()) root_ = environment();
-    if (local_.fast.grid) {
-        mixture_ = ACDF_WALK_ON_GRIDS;
-        for (u32 i = 0; i < local_.bright_tile_count; ++i) light_links_[i] = local_.bright_tiles[i].tile;
-        failed_ = !tiles_.make(local_) || failed_;
-    } else if (local_.blend.tiles && !failed_) mixture_ = splits(acdf_blend_root(&local_.blend), cells_.whole());
+    if (local_.blend.tiles && !failed_) mixture_ = splits(acdf_blend_root(&local_.blend), cells_.whole());
     if (rows_ && !failed_) mixture_ = row_split(rows_->splits ? 0 : ACDF_TOP_TILE);
     if (failed_ || (brdf() && !views())) return false;
     return file_.kind() == ACDF_KIND_ENVIRONMENT || bins();
@@ -324,12 +318,12 @@ bool WalkMaker::make() {
 
 std::size_t WalkMaker::splits_of_rows() const {
     if (rows_) return rows_->splits;
-    return local_.blend.tiles && !local_.fast.grid ? local_.blend.tiles->tile_count - std::size_t{1} : 0;
+    return local_.blend.tiles ? local_.blend.tiles->tile_count - std::size_t{1} : 0;
 }
 
 std::size_t WalkMaker::rows_of_splits() const {
     if (rows_) return rows_->rows;
-    return local_.blend.tiles && !local_.fast.grid ? local_.blend.tiles->row_count : 0;
+    return local_.blend.tiles ? local_.blend.tiles->row_count : 0;
 }
 
 // What a row gives to the halves of each split, in preorder: the smaller share, negative where it is the upper
@@ -367,13 +361,13 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
                       bright_tiles = 8 * std::size_t{local_.bright_tile_count};
     const std::size_t words = ACDF_WALK_HEADER_WORDS +
                               (parts_.nodes.bytes() + parts_.leaves.bytes() + bins_.bytes() + views_.bytes()) / 4 +
-                              bright_tiles + shares + tiles_.words() + maps_.words();
+                              bright_tiles + shares + maps_.words();
     if (words > 0x3FFFFFFFu) return false;
     block = take_block({}, 4 * words);
     if (!block.data) return false;
     u32* const out = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
     const float scale = unit();
-    std::size_t at = ACDF_WALK_HEADER_WORDS + (local_.fast.grid ? WalkTiles::header_words : 0);
+    std::size_t at = ACDF_WALK_HEADER_WORDS;
     const auto place = [&](u32 header, const void* from,
                            std::size_t bytes) { // where there is none, its offset is 0
         if (bytes == 0) return;
@@ -392,7 +386,6 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     out[ACDF_WALK_STRIDE] = static_cast<u32>(stride);
     out[ACDF_WALK_BRIGHT_TILE_COUNT] = local_.bright_tile_count;
     out[ACDF_WALK_COSINE] = float_bits(local_.cosine_share);
-    out[ACDF_WALK_FAST] = local_.fast.grid != nullptr;
     if (brdf()) {
         const AcdfViews& views = *file_.brdf().data().views; // in the file
         out[ACDF_WALK_VIEW_COUNT] = views.theta_count;
@@ -415,7 +408,6 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     if (shares > 0) out[ACDF_WALK_SHARES] = static_cast<u32>(at);
     for (u32 row = 0; shares > 0 && row < rows_of_splits(); ++row, at += stride)
         this->shares(row, reinterpret_cast<float*>(out + at));
-    if (local_.fast.grid) tiles_.place(local_, out, at);
     if (indexed_.top) maps_.place(out, at);
     return true;
 }

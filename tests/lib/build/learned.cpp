@@ -279,7 +279,7 @@ TEST(LearnedVisibility, ErrorsAreValues) {
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(32 << 10);
     builder::Local other;
-    options.shape = builder::LocalShape::fast;
+    options.shape = builder::LocalShape::halvings;
     ASSERT_TRUE(builder::local(target(), options, other).ok());
     EXPECT_EQ(code(other.bytes, floor_options()), Code::bad_source);
     options.shape = builder::LocalShape::small;

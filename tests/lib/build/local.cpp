@@ -71,51 +71,6 @@ TEST(LocalFiles, BudgetsAreFilledAndKept) {
     EXPECT_LT(before, full_cdf / 50.0);
 }
 
-/// What they take is known by their knots alone: nothing is tried again to come within a budget.
-TEST(LocalFiles, FastOnesFillAndKeepTheirBudget) {
-    double before = INFINITY;
-    for (std::uint64_t budget : {12288u, 32768u, 131072u}) {
-        if (acdf_test::kSanitized && budget > 12288) break; // the same code, on more of it
-        build::LocalOptions options;
-        options.shape = compress::LocalShape::fast;
-        options.goal.budget = budget;
-        const build::Local local = build(options);
-        EXPECT_LE(local.bytes.size(), budget);
-        EXPECT_GE(double(local.bytes.size()), 0.9 * double(budget));
-        EXPECT_EQ(local.accuracy.support_violations, 0u);
-        EXPECT_LT(local.accuracy.relative_variance, before);
-        before = local.accuracy.relative_variance;
-        options.codec = ACDF_CODEC_ZLIB;
-        EXPECT_LE(build(options).bytes.size(), budget);
-    }
-    build::LocalOptions options;
-    options.shape = compress::LocalShape::fast;
-    options.goal = {Goal::Kind::variance, 0, 0, 4.0 * before};
-    EXPECT_LE(build(options).accuracy.relative_variance, 4.0 * before);
-    options.shape_from = build::ShapeFrom::request;
-    EXPECT_EQ(build::option_text("", options).rfind("--filter nearest --shape fast ", 0), 0u);
-    options.goal = {Goal::Kind::cells, 4000, 0, 0.0};
-    EXPECT_GT(load(build(options)).local().data().blend.tiles->tile_count, 10u);
-}
-
-/// More tiles take nothing from grids: a larger file is hardly ever worse, and never by much.
-TEST(LocalFiles, FastOnesGainByBytes) {
-    ACDF_NOT_SANITIZED();
-    std::mt19937 rng(3);
-    std::lognormal_distribution<double> noise(0.0, 1.5);
-    const Target noisy = acdf_test::texel_target(64, 32, [&](std::uint32_t, std::uint32_t) { return noise(rng); });
-    build::LocalOptions options;
-    options.shape = compress::LocalShape::fast;
-    options.scene = {{{0.3f, 0.1f, 0.9f}, 1.0}};
-    double best = INFINITY;
-    for (std::uint64_t kib = 8; kib <= 24; ++kib) {
-        options.goal.budget = 1024 * kib;
-        const double variance = build::build_local(noisy, {}, options).accuracy.relative_variance;
-        EXPECT_LT(variance, 2.0 * best) << kib;
-        best = std::min(best, variance);
-    }
-}
-
 TEST(LocalFiles, TargetVarianceIsReachedBySmallFilesWhereTheyDo) {
     build::LocalOptions options;
     options.goal = {Goal::Kind::variance, 0, 0, 2.0};

@@ -99,8 +99,7 @@ builder::LocalOptions of_budget(std::uint64_t bytes, builder::LocalShape shape) 
     return out;
 }
 
-constexpr builder::LocalShape kShapes[] = {builder::LocalShape::fast, builder::LocalShape::small,
-                                           builder::LocalShape::halvings};
+constexpr builder::LocalShape kShapes[] = {builder::LocalShape::small, builder::LocalShape::halvings};
 
 TEST(PointsWithoutNormal, OfEveryShape) {
     for (const builder::LocalShape shape : kShapes)

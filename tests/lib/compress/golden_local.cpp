@@ -48,8 +48,7 @@ TEST_P(GoldenLocal, HasThatPdfThere) {
 }
 
 INSTANTIATE_TEST_SUITE_P(V1_0, GoldenLocal,
-                         ::testing::Values("local", "local_grid", "local_halvings", "octahedral_local",
-                                           "local_fast", "octahedral_local_fast"),
+                         ::testing::Values("local", "local_grid", "local_halvings", "octahedral_local"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(GoldenLocalContents, EachFileHasWhatItIsFor) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "tests/inputs/directions.h"
-#include "tests/lib/reader/local_fast_random.h"
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/normals_builder.h"
@@ -16,7 +15,7 @@
 
 namespace acdf_test::products {
 
-constexpr std::uint32_t file_count = 64; // every fourth one of the fast shape, every fourth of halvings
+constexpr std::uint32_t file_count = 64; // every other one of halvings
 
 // Small grids, so that pdfs can be summed over their squares.
 inline RandomOptions small_grid(std::uint32_t seed) {
@@ -34,13 +33,6 @@ inline LocalSpec random_local(std::uint32_t seed, bool tilts) {
     options.tilts = tilts;
     return RandomLocal(seed, options).make();
 }
-// From one tile to as many as there are squares, in several groups.
-inline LocalSpec random_fast_local(std::uint32_t seed) {
-    const RandomOptions options = small_grid(seed);
-    RandomFast random(seed, options);
-    if (seed % 3 != 0) return random.make();
-    return random.make_cut_evenly(options.columns / 2, 1 + seed % 4);
-}
 // On one tree of halvings, whose rows have light at each normal.
 inline Bytes random_halved_local(std::uint32_t seed) {
     NormalsSpec spec = random_normals(seed, small_grid(seed));
@@ -49,8 +41,7 @@ inline Bytes random_halved_local(std::uint32_t seed) {
     return spec.encode();
 }
 inline Bytes random_light(std::uint32_t seed, bool tilts) {
-    if (seed % 4 == 1) return random_halved_local(seed);
-    return seed % 4 == 3 ? random_fast_local(seed / 4).encode() : random_local(seed, tilts).encode();
+    return seed % 2 == 1 ? random_halved_local(seed) : random_local(seed, tilts).encode();
 }
 
 struct Vector {
@@ -125,9 +116,6 @@ struct TestLobe {
 constexpr double widths[] = {1.0, 0.1, 1e-3};
 using Sampler = acdf::ProductSampler<TestLobe>;
 
-inline bool has_groups(const Sampler::Point& point) {
-    return point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0;
-}
 inline bool has_cut(const Sampler::Point& point) {
     return (point.light.what == ACDF_LOCAL_BLEND || point.light.what == ACDF_LOCAL_ROWS) && point.cut.count > 0;
 }

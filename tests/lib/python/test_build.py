@@ -88,8 +88,8 @@ class Built(unittest.TestCase):
         self.assertLessEqual(light.size, 65536)
         w, p = light.sample([0, 0, 1], np.random.default_rng(3).random((1000, 2)))
         self.assertGreater((w[:, 2] > 0).mean(), 0.9)
-        fast = acdf.build_local(sky_image(16), budget="64KiB", shape="fast", threads=1)
-        self.assertEqual(fast.info()["options"], "--shape fast --budget 65536")
+        small = acdf.build_local(sky_image(16), budget="64KiB", shape="small", threads=1)
+        self.assertEqual(small.info()["options"], "--shape small --budget 65536")
         with self.assertRaisesRegex(ValueError, "shape"):
             acdf.build_local(sky_image(16), shape="round")
         named = acdf.build_local(sky_image(16), budget="64KiB", normals=[[0, 0, 1], [0, 1, 0]], normal_weights=[3, 1])

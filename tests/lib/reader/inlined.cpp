@@ -105,7 +105,6 @@ TEST_P(InlinedLocal, RoundsAsItsCallerDid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Golden, InlinedLocal,
-                         testing::Values("local", "local_grid", "local_halvings", "octahedral_local", "local_fast",
-                                         "octahedral_local_fast"));
+                         testing::Values("local", "local_grid", "local_halvings", "octahedral_local"));
 
 } // namespace

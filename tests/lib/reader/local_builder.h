@@ -1,7 +1,6 @@
 // Writes files of kind 2 from format/SPEC.md alone. It checks nothing, so that tests can write broken files too.
 #pragma once
 
-#include "tests/lib/reader/fast_spec.h"
 #include "tests/lib/reader/files.h"
 #include "tests/lib/reader/portals_spec.h"
 
@@ -73,7 +72,6 @@ struct LocalSpec {
     std::vector<int> tile_curves;                ///< empty, or one a tile: its first curve, -1: it is a cell
     std::vector<std::uint16_t> codebook;         ///< 256
     std::vector<Bytes> codes;                    ///< rows of one byte a split
-    std::optional<FastSpec> fast;                ///< instead of these and of curves in tiles
     std::vector<BinSpec> bins;                   ///< root: the row, or a curve of `tree`; no_root: not stored
     std::vector<BrightTileSpec> bright_tiles;
     float cosine_share = 0.0f;
@@ -102,18 +100,14 @@ struct LocalSpec {
 
     Bytes tile_chunk() const {
         Bytes out;
-        const std::size_t roots = fast ? tiles : tile_curves.size(), rows = fast ? fast->rows.size() : codes.size();
-        for (std::size_t v : {std::size_t{tiles}, roots, rows, std::size_t{0}})
+        for (std::size_t v : {std::size_t{tiles}, tile_curves.size(), codes.size(), std::size_t{0}})
             put32(out, static_cast<std::uint32_t>(v));
         for (std::uint16_t v : codebook) put16(out, v);
         for (const SplitSpec& split : splits) {
             put32(out, split.axis | split.position << 3);
             for (std::uint32_t child : split.child) put16(out, child);
         }
-        const std::vector<std::uint32_t> starts = fast ? fast->roots() : std::vector<std::uint32_t>();
-        if (fast)
-            for (std::size_t t = 0; t < tiles; ++t) put32(out, starts[t]);
-        for (int curve : fast ? std::vector<int>() : tile_curves)
+        for (int curve : tile_curves)
             put32(out, curve < 0 ? no_root : tree.starts[static_cast<std::size_t>(curve)]);
         return out;
     }
@@ -151,11 +145,7 @@ struct LocalSpec {
                        {"TREE", curves, 1, zlib}};
         if (tiles > 0) {
             file.chunks.push_back({"TILE", tile_chunk(), 1, zlib});
-            if (!fast) file.chunks.push_back({"ROWS", row_chunk(), 1, zlib});
-        }
-        if (fast) {
-            file.chunks.push_back({"SUMS", fast->sum_chunk(), 1, zlib});
-            file.chunks.push_back({"GRID", fast->grid_chunk(), 1, zlib});
+            file.chunks.push_back({"ROWS", row_chunk(), 1, zlib});
         }
         file.chunks.push_back({"LOCL", local_chunk(), 1, zlib});
         if (visibility) file.chunks.push_back({"PLAC", visibility->encode(), 0, zlib});
@@ -184,30 +174,6 @@ inline LocalSpec shared_local() {
     spec.codebook = even_codebook();
     spec.codes = {{100, 30}, {200, 255}};
     spec.bins = {{0, 0.5f}, {1, 0.25f}, {0, 0.125f}, {no_root, 0.0f}, {1, 0.5f}, {0, 0.75f}};
-    return spec;
-}
-
-/// The same in the fast shape: 3 x 4 cells in columns [0, 3), where line 1 is dark, one cell in tile 1, and in tile
-/// 2 cells of 2 x 4 steps, the last ones of which are cut.
-inline LocalSpec fast_local() {
-    LocalSpec spec = shared_local();
-    spec.tree = {{CurveSpec{}}, {}};
-    spec.fast.emplace();
-    spec.fast->rows = {{{32767}, {100, 130, 255}}, {{32767}, {200, 200, 255}}};
-    spec.fast->grids = {{{0, 1}, {90, 90, 200, 255}, {{100, 100, 255}, {0, 0, 255}, {80, 160, 255}, {1, 254, 255}}},
-                        {{3, 2}, {255}, {{255}}},
-                        {{1, 2}, {60, 255}, {{50, 90, 255}, {255, 255, 255}}}};
-    return spec;
-}
-
-/// fast_local with tile 1 as a light.
-inline LocalSpec fast_lit_local() {
-    LocalSpec spec = fast_local();
-    spec.fast->rows[0].tiles = {100, 100, 255};
-    spec.bright_tiles.resize(1);
-    spec.bright_tiles[0].tile = 1;
-    spec.bright_tiles[0].low = {3, 0};
-    spec.bright_tiles[0].high = {8, 2};
     return spec;
 }
 

@@ -2,7 +2,6 @@
 // It shares nothing with lib/reader. It expects valid files.
 #pragma once
 
-#include "tests/lib/reader/fast_reference.h"
 #include "tests/lib/reader/reference.h"
 
 #include <algorithm>
@@ -206,10 +205,6 @@ private:
     // p times that of the cell within the tile.
     void sample_in_tile(std::size_t tile, double (&u)[2], Cell& cell) const {
         const double least = std::ldexp(1.0, -1000), p = std::max(cell.p, least);
-        if (!sums_.empty()) {
-            cell.p = std::max(p * fast().sample_in_grid(tile, u, cell), least);
-            return;
-        }
         cell.p = 1.0;
         if (tile_root(tile) != 0) {
             walk_from(tile_root(tile), cell, [&](const Curve& c) { return draw(c, u); });
@@ -263,12 +258,6 @@ private:
             return;
         }
         u[0] = std::min(std::max((x - source.bright_tiles) / (source.sum - source.bright_tiles), 0.0), 1.0);
-        if (!sums_.empty()) {
-            const std::size_t tile = fast().draw(source.row, source.w, u, cell);
-            sample_in_tile(tile, u, cell);
-            cell.p = std::max(total_of(source.w) / source.sum * cell.p, std::ldexp(1.0, -1000));
-            return;
-        }
         std::vector<double> w = source.w;
         const double whole = total_of(w);
         double p = whole;
@@ -292,8 +281,7 @@ private:
 
     void find_blend(const Source& source, const double (&square)[2], Cell& cell) const {
         const double least = std::ldexp(1.0, -1000);
-        const auto in_tile = [&](std::size_t tile) { // of its own tree, or grid
-            if (!sums_.empty()) return fast().find_in_grid(tile, square, cell);
+        const auto in_tile = [&](std::size_t tile) { // of its own tree
             if (tile_root(tile) == 0) return 1.0;
             cell.p = 1.0;
             walk_from(tile_root(tile), cell, [&](const Curve& c) { return segment_of(c, square); });
@@ -311,11 +299,6 @@ private:
             if (p > 0.0 && cell.p > 0.0) cell.p = std::max(cell.p, least);
             return;
         }
-        if (!sums_.empty()) {
-            const double part = fast().find(source.row, source.w, square, cell);
-            cell.p = part > 0.0 ? std::max(total_of(source.w) / source.sum * part, least) : 0.0;
-            return;
-        }
         std::vector<double> w = source.w;
         const double whole = total_of(w);
         double p = whole;
@@ -331,8 +314,6 @@ private:
         const double inside = p > 0.0 ? in_tile(node - 0x8000) : 0.0;
         cell.p = inside == 0.0 ? 0.0 : std::max(whole / source.sum * std::max(p / whole * inside, least), least);
     }
-
-    FastShape fast() const { return {tiles_, sums_, grid_, tile_count, columns, rows}; }
 
     std::size_t axes_;
 };

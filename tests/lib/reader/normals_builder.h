@@ -1,4 +1,4 @@
-// Local environments on one tree of halvings, byte by byte (SPEC.md §10.7).
+// Local environments on one tree of halvings, byte by byte (SPEC.md §10.6).
 #pragma once
 
 #include "tests/lib/reader/local_builder.h"

@@ -399,8 +399,6 @@ private:
         if (type == "TREE") tree_ = bytes;
         if (type == "TILE") tiles_ = bytes;
         if (type == "ROWS") rows_ = bytes;
-        if (type == "SUMS") sums_ = bytes;
-        if (type == "GRID") grid_ = bytes;
         if (type == "LOCL") local_ = bytes;
         if (type == "HALV") halvings_ = bytes;
     }
@@ -459,7 +457,7 @@ private:
     }
 
 protected:
-    Bytes description_, bins_, tree_, tiles_, rows_, sums_, grid_, local_, halvings_;
+    Bytes description_, bins_, tree_, tiles_, rows_, local_, halvings_;
 };
 
 } // namespace acdf_reference

@@ -4,7 +4,6 @@
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/golden_files.h"
 #include "tests/lib/reader/local_builder.h"
-#include "tests/lib/reader/local_fast_random.h"
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/random.h"
 #include "tests/lib/shader/walked_file.h"
@@ -214,21 +213,6 @@ TEST(ShaderTraversal, AnswersAsTheReaderOnRandomLocalFiles) {
     EXPECT_GT(files, 120 / int(kStep));
     EXPECT_LT(all.other_cells, 1e-4 * all.draws);
     EXPECT_LT(all.rounded, 1e-4 * all.draws);
-    EXPECT_LT(all.other_normals, 2e-2 * all.normals);
-}
-
-TEST(ShaderTraversal, AnswersAsTheReaderOnRandomFilesOfTheFastShape) {
-    WalkCounted all;
-    for (std::uint32_t seed = 0; seed < 60; seed += kStep) {
-        SCOPED_TRACE(seed);
-        const WalkedFile file(random_fast(seed).encode());
-        ASSERT_TRUE(file.status.ok()) << file.status.message;
-        EXPECT_LT(4 * file.tables.size(), 4 * file.bytes.size() + (std::size_t{1} << 20)); // no cell has a record
-        all += compare_walk(file, 40, 8);
-        if (HasFatalFailure()) return;
-    }
-    EXPECT_LT(all.other_cells, 1e-4 * all.draws);
-    EXPECT_LT(all.rounded, 2e-3 * all.draws); // weights of rows, which are whole numbers of 14 bits
     EXPECT_LT(all.other_normals, 2e-2 * all.normals);
 }
 

@@ -209,8 +209,6 @@ TEST(RenderSampler, TextsAreUnderstood) {
     EXPECT_EQ(product.parts[0].bytes, 1000000u);
     EXPECT_EQ(product.parts[1].alpha, 0.1);
     EXPECT_EQ(parse_sampler("product(env,file:a.acdf)").divisions, 0u); // as the samples ask for
-    EXPECT_FALSE(product.parts[0].fast);
-    EXPECT_TRUE(parse_sampler("product(local:1MB --shape fast,ggx:0.1)").parts[0].fast);
     EXPECT_EQ(parse_sampler("mis(warp(local,brdf),brdf)").parts[0].kind, SamplerKind::warp);
     EXPECT_EQ(parse_sampler("ris:8(local,brdf)").candidates, 8u);
     EXPECT_EQ(parse_sampler("tiles:12x12(brdf)").parts[0].kind, SamplerKind::brdf);
@@ -249,7 +247,6 @@ TEST(RenderSampler, MistakesAreNamed) {
         {"ris:0", "the number of candidates is"},
         {"product", "give product(LIGHT,BRDF)"},
         {"local:1MB --shape slow", "is not an option"},
-        {"env:1MB --shape fast", "is not an option"},
         {"product:0(local,brdf)", "the number of parts is"},
         {"product:97(local,brdf)", "the number of parts is"},
         {"product(local)", "give product(LIGHT,BRDF)"},

@@ -76,96 +76,62 @@ struct PartRating {
     }
 };
 
-/// Numbers are added up by as many others, which do not wait for each other: four vectors.
-template <class Real>
-constexpr std::size_t side_by_side = 64 / sizeof(Real);
-/// As many as there is to be room for.
-template <class Real>
-constexpr std::size_t room_for(std::size_t count) noexcept {
-    return (count + side_by_side<Real> - 1) / side_by_side<Real> * side_by_side<Real>;
-}
-
-/// A sum of numbers; those behind them, where there is room, become 0.
-template <class Real>
-ACDF_METHOD Real padded_sum(Real* x, int count) noexcept {
-    constexpr std::size_t side = side_by_side<Real>, half = side / 2;
-    const std::size_t numbers = static_cast<std::size_t>(count), all = room_for<Real>(numbers);
-    Real sum[side] = {};
-    for (std::size_t i = numbers; i < all; ++i) x[i] = 0;
-    for (std::size_t i = 0; i < all; i += side)
-        for (std::size_t k = 0; k < side; ++k) sum[k] += x[i + k];
-    for (std::size_t k = 0; k < half; ++k) sum[k] += sum[k + half];
-    for (std::size_t k = 4; k < half; ++k) sum[k - 4] += sum[k];
+/// A sum of numbers, one for each part of a cut; those behind them become 0. They are added up by eight others,
+/// which do not wait for each other.
+ACDF_METHOD inline double sum_of_parts(double (&x)[ACDF_CUT_MAX_PARTS], int count) noexcept {
+    constexpr int side = 8;
+    static_assert(ACDF_CUT_MAX_PARTS % side == 0);
+    double sum[side] = {};
+    for (int i = count; i < ACDF_CUT_MAX_PARTS; ++i) x[i] = 0.0;
+    for (int i = 0; i < count; i += side)
+        for (int k = 0; k < side; ++k) sum[k] += x[i + k];
+    for (int k = 0; k < 4; ++k) sum[k] += sum[k + 4];
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
-/// Gives all parts their probabilities, into `left`. Returns the share of samples that is left to the lobe's own
+/// Gives all parts of a cut their probabilities. Returns the share of samples that is left to the lobe's own
 /// sampler: the more the lobe changes within parts, and the less the light within the lobe. 1, and nothing is
-/// given, where parts have no light or reflect none. `Most`: of parts, for which `left` has room; `least_share`:
-/// what that sampler gets at least; `parts` give the light in one, and its rating.
-template <std::size_t Most, class Real, class Parts>
-ACDF_METHOD double weigh_parts(int count, const LobeGuides& guides, double least_share, const Parts& parts,
-                               Real* left) noexcept {
+/// given, where parts have no light or reflect none.
+ACDF_METHOD inline double weigh_cut(AcdfCut& cut, const LobeGuides& guides, const PartRating* ratings) noexcept {
     // What the value may be elsewhere in a part, beside what was seen: a little of what is around it and of the
     // mean.
-    constexpr Real around = Real(0.1), anywhere = Real(0.02);
-    constexpr double most_share = 0.8;
+    constexpr double around = 0.1, anywhere = 0.02;
+    constexpr double least_share = 0.03, most_share = 0.8;
     // How much of what the lobe's own sampler gives is left out of the parts, and what they keep at least.
     constexpr double left_out = 0.8, kept = 0.1;
-    constexpr std::size_t room = room_for<Real>(Most);
-    Real wanted[room], lobe[room], above[room];
+    double wanted[ACDF_CUT_MAX_PARTS], lobe[ACDF_CUT_MAX_PARTS], above[ACDF_CUT_MAX_PARTS],
+        left[ACDF_CUT_MAX_PARTS];
+    const int count = cut.count;
     for (int i = 0; i < count; ++i) {
-        wanted[i] = parts.light(i);
-        lobe[i] = wanted[i] * Real(parts.mean(i));
-        above[i] = lobe[i] * Real(parts.spread(i));
+        wanted[i] = cut.part[i].sum;
+        lobe[i] = wanted[i] * double{ratings[i].mean};
+        above[i] = lobe[i] * double{ratings[i].spread};
     }
-    const Real light = padded_sum(wanted, count), reflected = padded_sum(lobe, count);
-    if (!(light > 0 && reflected > 0)) return 1.0;
-    const double mean = double{reflected} / double{light}, spread = double{padded_sum(above, count)};
-    const double share = acdf_clamp(4.0 * (spread / double{reflected}) / (1.0 + 2.0 * guides.variance(mean)),
-                                    least_share, most_share);
-    const Real least = anywhere * Real(mean), given = Real(left_out * share),
-               kept_share = Real(kept * (1.0 - share));
-    const Real rest = Real(1.0 - share);
+    const double light = sum_of_parts(wanted, count), reflected = sum_of_parts(lobe, count);
+    if (!(light > 0.0 && reflected > 0.0)) return 1.0;
+    const double mean = reflected / light, spread = sum_of_parts(above, count);
+    const double share =
+        acdf_clamp(4.0 * (spread / reflected) / (1.0 + 2.0 * guides.variance(mean)), least_share, most_share);
+    const double least = anywhere * mean, given = left_out * share, rest = 1.0 - share, kept_share = kept * rest;
     for (int i = 0; i < count; ++i) {
-        wanted[i] = parts.light(i) * (Real(parts.mean(i)) + around * Real(parts.around(i)) + least);
-        lobe[i] = given * Real(parts.mass(i));
+        wanted[i] = cut.part[i].sum * (double{ratings[i].mean} + around * double{ratings[i].around} + least);
+        lobe[i] = given * double{ratings[i].mass};
     }
-    const Real whole = padded_sum(wanted, count);
+    const double whole = sum_of_parts(wanted, count);
     for (int i = 0; i < count; ++i) wanted[i] /= whole;
     // Raised until what is left of them after the lobe's share adds up to the rest.
-    Real scale = 1;
+    double scale = 1.0;
     for (int pass = 0;; ++pass) {
         for (int i = 0; i < count; ++i) {
-            const Real p = scale * wanted[i], over = p - lobe[i], floor = kept_share * p;
+            const double p = scale * wanted[i], over = p - lobe[i], floor = kept_share * p;
             left[i] = over > floor ? over : floor;
-            above[i] = over > floor ? wanted[i] : Real(0);
+            above[i] = over > floor ? wanted[i] : 0.0;
         }
         if (pass == 3) break;
-        scale += (rest - padded_sum(left, count)) / (Real(0.05) + padded_sum(above, count));
-        if (!(scale > Real(0.5))) scale = Real(0.5);
+        scale += (rest - sum_of_parts(left, count)) / (0.05 + sum_of_parts(above, count));
+        if (!(scale > 0.5)) scale = 0.5;
     }
-    return share;
-}
-
-/// The parts of a cut, to be weighted.
-struct CutParts {
-    const AcdfCut& cut;
-    const PartRating* ratings;
-
-    ACDF_METHOD double light(int i) const noexcept { return cut.part[i].sum; }
-    ACDF_METHOD float mean(int i) const noexcept { return ratings[i].mean; }
-    ACDF_METHOD float mass(int i) const noexcept { return ratings[i].mass; }
-    ACDF_METHOD float around(int i) const noexcept { return ratings[i].around; }
-    ACDF_METHOD float spread(int i) const noexcept { return ratings[i].spread; }
-};
-
-/// Gives all parts of a cut their probabilities, and returns the share of the lobe's own sampler, as weigh_parts.
-ACDF_METHOD inline double weigh_cut(AcdfCut& cut, const LobeGuides& guides, const PartRating* ratings) noexcept {
-    double left[room_for<double>(ACDF_CUT_MAX_PARTS)];
-    const double share =
-        weigh_parts<std::size_t{ACDF_CUT_MAX_PARTS}>(cut.count, guides, 0.03, CutParts{cut, ratings}, left);
-    for (int i = 0; share < 1.0 && i < cut.count; ++i) cut.part[i].probability = left[i];
+    for (int i = 0; i < count; ++i) cut.part[i].probability = left[i];
     return share;
 }
 

@@ -18,7 +18,6 @@
 #pragma once
 
 #include <acdf/product/product_cut.h>
-#include <acdf/product/product_groups.h>
 
 namespace acdf {
 
@@ -34,10 +33,7 @@ template <class LobePoint>
 struct ProductPoint {
     SurfaceFrame frame;
     AcdfLocalPoint light; ///< what serves the normal
-    union {               // empty where the light's own pdf is used as it is, or not at all
-        AcdfCut cut;
-        AcdfFastCut fast; ///< of bright tiles of the fast shape
-    };
+    AcdfCut cut;          ///< empty where the light's own pdf is used as it is, or not at all
     LobePoint lobe;
     double share; ///< of the samples that the BRDF's own sampler samples; below 0: nothing is sampled
 };
@@ -91,9 +87,6 @@ private:
     ACDF_METHOD static bool samples_cut(const Point& point) noexcept {
         return point.light.what == ACDF_LOCAL_BLEND || (point.light.what == ACDF_LOCAL_ROWS && point.cut.count > 0);
     }
-    ACDF_METHOD static bool samples_groups(const Point& point) noexcept {
-        return point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0;
-    }
 
     AcdfLocal light_;
     bool local_; ///< or an environment alone
@@ -123,13 +116,8 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
     point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
     const PointOfLobe<AnyLobe> of_lobe = {light_, point.light, point.frame, lobe_, point.lobe, parts_};
     if (point.light.what == ACDF_LOCAL_BLEND ||
-        (point.light.what == ACDF_LOCAL_ROWS && acdf_cut_serves_rows(&light_))) {
+        (point.light.what == ACDF_LOCAL_ROWS && acdf_cut_serves_rows(&light_)))
         point.share = CutRating<AnyLobe>(of_lobe, point.cut).make();
-    } else if (point.light.what == ACDF_LOCAL_FAST) {
-        point.fast.whole = 0;
-        if (parts_ > 1 && acdf_fast_cut_serves(&light_))
-            point.share = GroupRating<AnyLobe>(of_lobe).make(point.fast);
-    }
     return point;
 }
 
@@ -137,7 +125,6 @@ template <class AnyLobe>
 ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const float direction[3]) const noexcept {
     if (!(point.share >= 0.0 && point.share < 1.0)) return 0.0f;
     if (samples_cut(point)) return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
-    if (samples_groups(point)) return acdf_fast_cut_pdf(&light_, &point.light, &point.fast, direction);
     return acdf_local_pdf_at(&light_, &point.light, direction);
 }
 
@@ -171,8 +158,6 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
     const double rest = (u - point.share) / (1.0 - point.share);
     if (samples_cut(point)) {
         out = acdf_cut_sample(&light_, &point.light, &point.cut, rest, u1);
-    } else if (samples_groups(point)) {
-        out = acdf_fast_cut_sample(&light_, &point.light, &point.fast, rest, u1);
     } else {
         out = acdf_local_sample_at(&light_, &point.light, rest, u1);
         if (out.pdf > 0.0f) out.pdf = light_pdf(point, out.direction);

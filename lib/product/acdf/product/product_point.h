@@ -1,5 +1,5 @@
-// A shading point of product sampling while its parts are rated (acdf/product/product_cut.h,
-// acdf/product/product_groups.h): its light and its lobe. C++17, header only, freestanding.
+// A shading point of product sampling while its parts are rated (acdf/product/product_cut.h): its light and its
+// lobe. C++17, header only, freestanding.
 #pragma once
 
 #include <acdf/local.h>

@@ -42,14 +42,12 @@ extern "C" {
 #define ACDF_WALK_VIEW_COUNT 18u /* elevations */
 #define ACDF_WALK_AZIMUTHS 19u   /* of each of them; bins are numbered elevation by elevation; 0: no BRDF */
 #define ACDF_WALK_MIRRORED 20u   /* 1: azimuths of half-vectors are folded */
-#define ACDF_WALK_FAST 21u       /* 1: what bins share has the fast shape (acdf/shader/tiles.h) */
-#define ACDF_WALK_MAPS 22u       /* of several maps (acdf/shader/maps.h); 0: there are none */
+#define ACDF_WALK_MAPS 21u       /* of several maps (acdf/shader/maps.h); 0: there are none */
 #define ACDF_WALK_ZERO 31u       /* is 0, which no compiler knows */
 #define ACDF_WALK_HEADER_WORDS 32u
 
 #define ACDF_WALK_NONE 0xFFFFFFFFu
-#define ACDF_WALK_ON_GRIDS 0xFFFFFFFEu /* link of the mixture in the fast shape, which has no tree */
-#define ACDF_WALK_LEAF 0x80000000u     /* of a link: it is a leaf */
+#define ACDF_WALK_LEAF 0x80000000u /* of a link: it is a leaf */
 #define ACDF_WALK_SPLIT                                                                                            \
     0x40000000u /* of a node's chance: rows store it, as their code of the split of that number */
 

@@ -4,8 +4,7 @@
  * here it is C.
  *
  * Trees (acdf/shader/tree.h) end in leaves: parts of cells that lie in one piece of the sphere (acdf/pieces.h), or
- * cells of the octahedral square. The fast shape of local environments has tiles and grids instead
- * (acdf/shader/tiles.h, acdf/shader/grids.h).
+ * cells of the octahedral square.
  *
  * Pdfs are the reader's but for the rounding of floats, below 1e-5 of them. A sample is moved 2^-20 radians
  * (or 2^-20 of the square's side) inwards; the pdf of a direction so close to a border may be the neighbour's.
@@ -13,7 +12,7 @@
 #ifndef ACDF_SHADER_WALK_H
 #define ACDF_SHADER_WALK_H
 
-#include <acdf/shader/grids.h>
+#include <acdf/shader/point.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -72,9 +71,6 @@ ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AC
     ACDF_LET(AcdfUnit, d) = acdf_unit_of(x, y, z);
     if (here.mix.root == ACDF_WALK_NONE || d.length2 == 0.0f) {
         return 0.0f;
-    }
-    if (acdf_tiles_serve(tables, here) != 0u) {
-        return acdf_walk_combined_pdf(here, acdf_tiles_pdf(tables, here, d), x, y, z);
     }
     ACDF_LET(AcdfDirectionKeys, place) = acdf_walk_keys(tables, d);
     return acdf_walk_combined_pdf(
@@ -153,30 +149,22 @@ ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_bright_tile, ACDF_TABLES, tables, AcdfSha
     return end;
 }
 
-/* Samples by bright tiles and rows: where a traversal ends; of the fast shape a bright tile, or
- * ACDF_WALK_ON_GRIDS. */
+/* Samples by bright tiles and rows: where a traversal ends. */
 ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_row, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
     ACDF_VAR(AcdfWalkNumbers, left) = numbers;
     ACDF_VAR(AcdfWalkMixture, mix) = here.mix;
-    ACDF_VAR(AcdfWalkEnd, end);
     ACDF_LET(ACDF_U32, lit) = acdf_walk_border(here.light_sum, here.sum - here.light_sum, left.width0);
     ACDF_LET(ACDF_U32, is_light) = ACDF_SELECT(left.at0 < lit, 1u, 0u);
     if (is_light != 0u) {
         left.width0 = lit;
-        end = acdf_walk_sample_bright_tile(tables, here, left);
-        left = end.numbers;
-        mix = acdf_mixture_below(end.leaf, 1.0f);
+        ACDF_LET(AcdfWalkEnd, light) = acdf_walk_sample_bright_tile(tables, here, left);
+        left = light.numbers;
+        mix = acdf_mixture_below(light.leaf, 1.0f);
     } else {
         left.at0 = left.at0 - lit;
         left.width0 = left.width0 - lit;
     }
-    if (acdf_tiles_serve(tables, here) == 0u) {
-        end = acdf_walk_sample_leaf(tables, mix, left);
-    } else {
-        end.leaf = mix.root;
-        end.given = 0.0f;
-        end.numbers = left;
-    }
+    ACDF_VAR(AcdfWalkEnd, end) = acdf_walk_sample_leaf(tables, mix, left);
     if (is_light != 0u) {
         end.given = 0.0f; /* by the mixture */
     }
@@ -200,12 +188,8 @@ ACDF_FN4(AcdfWalkSample, acdf_walk_sample, ACDF_TABLES, tables, AcdfShaderPoint,
         numbers.at0 = numbers.at0 - cosine;
         numbers.width0 = numbers.width0 - cosine;
         ACDF_LET(AcdfWalkEnd, end) = acdf_walk_sample_row(tables, here, numbers);
-        if (acdf_tiles_serve(tables, here) != 0u) {
-            d = acdf_tiles_sample(tables, here.mix, end.leaf, end.numbers);
-        } else {
-            d = acdf_walk_direction(tables, end);
-            light = acdf_walk_bright_tile_pdf(tables, here, end);
-        }
+        d = acdf_walk_direction(tables, end);
+        light = acdf_walk_bright_tile_pdf(tables, here, end);
     }
     if (light < 0.0f) {
         return acdf_walk_sampled(d, acdf_walk_pdf(tables, here, d.x, d.y, d.z));

@@ -66,10 +66,6 @@ TEST(BuilderLocal, MakesWhatTheProgramMakes) {
     EXPECT_EQ(local_bytes(file, options),
               file.program({"--budget", "32KiB", "--cosine-share", "0.2", "--normals", "4", "--tiles", "60"}));
     options = {};
-    options.goal = Goal::of_budget(32 << 10);
-    options.shape = LocalShape::fast;
-    EXPECT_EQ(local_bytes(file, options), file.program({"--budget", "32KiB", "--shape", "fast"}));
-    options = {};
     options.sharing = false;
     options.columns = 6, options.rows = 3;
     options.fit.fit = ACDF_FIT_CDF;
@@ -123,17 +119,6 @@ TEST(BuilderLocal, Misuse) {
     refused("a small weight", [](LocalOptions& o) { o.max_weight = 0.5; });
     refused("a bound without sharing", [](LocalOptions& o) { o.max_weight = 9.0, o.sharing = false; });
     refused("a wild shape", [](LocalOptions& o) { o.shape = static_cast<LocalShape>(9); });
-    refused("fast without sharing", [](LocalOptions& o) { o.shape = LocalShape::fast, o.sharing = false; });
-    refused("fast and a bound", [](LocalOptions& o) { o.shape = LocalShape::fast, o.max_weight = 9.0; });
-    refused("fast and an MIS partner", [](LocalOptions& o) {
-        o.shape = LocalShape::fast;
-        o.mis.kind = ACDF_PARTNER_COSINE;
-    });
-    refused("fast and visibility cells", [](LocalOptions& o) {
-        o.shape = LocalShape::fast;
-        o.visibility.point = [](std::uint64_t, VisibilityPoint&) { return true; };
-        o.visibility.occluded = [](const VisibilityPoint&, const float*) { return false; };
-    });
     refused("a share", [](LocalOptions& o) { o.cosine_share = 1.0; });
     refused("a NaN share", [](LocalOptions& o) { o.cosine_share = kNan; });
     refused("a variance without sharing",

@@ -103,18 +103,6 @@ std::vector<MapCase> map_cases() {
          of_size(100, 2000)},
         {"octahedral_separate", squared("peaky_sun"), corners(3), of_size(0, 0, 0.0, false)},
         {"octahedral_separate_grid", squared("black_lower_hemisphere"), grid(9, 5), of_size(0, 0, 0.125, false)},
-        {"fast_sky", synthetic("smooth_sky"), corners(4), fast_of_size(60, 3000)},
-        {"fast_sun", synthetic("peaky_sun"), corners(5), fast_of_size(120, 6000)},
-        {"fast_texel", synthetic("one_lit_texel"), corners(4), fast_of_size(30, 600)},
-        {"fast_checkerboard", synthetic("checkerboard"), corners(2), fast_of_size(200, 9000)},
-        {"fast_denormals", synthetic("denormals"), corners(3), fast_of_size(50, 1000, 0.5)},
-        {"fast_range_of_1e12", synthetic("range_of_1e12"), corners(3), fast_of_size(150, 4000)},
-        {"fast_one_tile", synthetic("odd_noise"), corners(2), fast_of_size(1, 1000)},
-        {"fast_suns", [] { return std::optional(suns_target(256, 128)); }, corners(5),
-         fast_of_size(600, 9000, 0.2)},
-        {"fast_scene", [] { return std::optional(suns_target(128, 64)); }, scene_bins, fast_of_size(100, 2000)},
-        {"fast_octahedral", [] { return std::optional(octahedral(suns_target(96, 96))); }, scene_bins,
-         fast_of_size(150, 5000)},
         {"city", probe("city.exr", 8), corners(6), of_size(200, 6000)},
         {"noon_grass", probe("noon_grass_1k.hdr", 8), corners(6), of_size(200, 6000)},
         {"grace", probe("grace_probe.hdr", 8), corners(6), of_size(200, 6000)},
@@ -371,8 +359,7 @@ TEST_P(Maps, StrataStayStrata) {
             if (source.what == ACDF_LOCAL_NOTHING) break;
             AcdfRange range[2];
             acdf_sphere_ranges(columns, rows, range);
-            if (source.what == ACDF_LOCAL_FAST) acdf_local_fast_sample_cell(&local, &source, u, range);
-            else if (source.what == ACDF_LOCAL_BLEND) acdf_local_blend_sample(&local, &source, u, range);
+            if (source.what == ACDF_LOCAL_BLEND) acdf_local_blend_sample(&local, &source, u, range);
             else acdf_tree_sample(local.environment.tree, source.by.root, u, range);
             const bool same = i > 0 && range[0].low == before[0].low && range[1].low == before[1].low &&
                               range[0].high == before[0].high && range[1].high == before[1].high;

@@ -20,9 +20,8 @@ namespace {
 
 std::vector<Case> cases() {
     std::vector<Case> all = container_cases();
-    for (auto make :
-         {plane_cases, partner_cases, description_cases, tree_cases, table_cases, local_cases, visibility_cases,
-          portal_cases, fast_cases, brdf_cases, halvings_cases, indexed_cases, normals_cases})
+    for (auto make : {plane_cases, partner_cases, description_cases, tree_cases, table_cases, local_cases,
+                      visibility_cases, portal_cases, brdf_cases, halvings_cases, indexed_cases, normals_cases})
         for (const Case& c : make()) all.push_back(c);
     return all;
 }

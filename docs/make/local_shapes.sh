@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# fast_shape.sh DATA [ACDF]: prints the table of docs/appendix/local-shapes.md, the mean relative variance of local files
+# local_shapes.sh DATA [ACDF]: prints the table of docs/appendix/local-shapes.md, the mean relative variance of local files
 # of each shape.
 set -euo pipefail
 data=$1
@@ -13,16 +13,14 @@ variance() {
         jq .relative_variance
 }
 
-echo "| mean relative variance | 1 MiB, halvings | small, ratio | fast, ratio | 128 KiB, halvings | small, ratio | fast, ratio |"
-echo "|---|---|---|---|---|---|---|"
+echo "| mean relative variance | 1 MiB, halvings | small, ratio | 128 KiB, halvings | small, ratio |"
+echo "|---|---|---|---|---|"
 for name in noon_grass_1k.hdr studio_small_05_1k.hdr venice_sunset_1k.hdr courtyard.exr sunset.exr city.exr; do
     line="| ${name%.*} |"
     for size in 1MiB 128KiB; do
         least=$(variance "$data/probes/$name" $size halvings)
         line+=$(awk -v v="$least" 'BEGIN { printf " %.4f |", v }')
-        for shape in small fast; do
-            line+=$(awk -v v="$(variance "$data/probes/$name" $size $shape)" -v of="$least" 'BEGIN { printf " %.4f, %.2f |", v, v / of }')
-        done
+        line+=$(awk -v v="$(variance "$data/probes/$name" $size small)" -v of="$least" 'BEGIN { printf " %.4f, %.2f |", v, v / of }')
     done
     echo "$line"
 done
