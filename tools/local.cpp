@@ -148,7 +148,7 @@ void LocalConversion::check() {
     if (portals_.given() && !visibility_) throw CLI::ValidationError("--portal", "is for --visibility");
     if (volume_ && !visibility_) throw CLI::ValidationError("--volume", "is for --visibility");
     if (local_.shape == builder::LocalShape::halvings)
-        for (const char* option : {"--no-sharing", "--visibility", "--max-weight"})
+        for (const char* option : {"--no-sharing", "--visibility"})
             if (given(option))
                 throw CLI::ValidationError("--shape", std::string("halvings goes without ") + option);
     if (!visibility_) return;

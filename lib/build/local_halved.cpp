@@ -1,6 +1,7 @@
 #include "build/local_halved.h"
 
 #include "build/local_draft.h"
+#include "build/weight_bound.h"
 #include "compress/local/halved/fit.h"
 #include "compress/visibility/fit.h"
 
@@ -29,8 +30,10 @@ public:
 
     Local of_budget(std::uint64_t budget, const Progress& progress) {
         const auto build = [&](std::uint64_t bytes) { return of_bytes(bytes, progress); };
-        if (options_.codec == ACDF_CODEC_NONE) return build(budget);
-        return compressed_local(budget, build);
+        return bounded([&] {
+            if (options_.codec == ACDF_CODEC_NONE) return build(budget);
+            return compressed_local(budget, build);
+        });
     }
 
     Local of_cells(std::uint64_t cells, const Progress& progress) {
@@ -39,7 +42,7 @@ public:
         compress::LocalHalvingsSize size = size_for(bins, bytes);
         size.halvings = std::max<std::uint64_t>(cells, 1) - 1;
         size.bytes = std::uint64_t{1} << 32;
-        return made(bins, size, progress);
+        return bounded([&] { return made(bins, size, progress); });
     }
 
     Local of_variance(double variance, const Progress& progress) {
@@ -57,6 +60,14 @@ public:
     }
 
 private:
+    template <class Build>
+    Local bounded(const Build& build) {
+        return within_weight(options_.max_weight, [&](double bound) {
+            max_weight_ = bound;
+            return build();
+        });
+    }
+
     NormalBins bins_for(double bytes) {
         const double of_bin = sizeof(AcdfBin) + (options_.mis ? sizeof(AcdfPartnerRecord) : 0);
         const compress::RowSize rows =
@@ -109,8 +120,9 @@ private:
         return compress::store(fit.halvings, fit.roots, described(fit, bins));
     }
 
-    Local made(const NormalBins& bins, const compress::LocalHalvingsSize& size, const Progress& progress) {
+    Local made(const NormalBins& bins, compress::LocalHalvingsSize size, const Progress& progress) {
         const double fitting = options_.visibility.scene ? 0.2 : 0.8; // of the time
+        if (max_weight_ > 0.0) size.max_weight = max_weight_;
         const LocalHalvings fit = fitter_.fit(bins, size, [&](double share) {
             if (progress) progress(fitting * share, "fitting");
         });
@@ -151,6 +163,7 @@ private:
     compress::LocalHalvingsFitter fitter_;
     std::uint32_t code_bits_ = 7;
     std::uint64_t budget_ = 0; ///< of the file that is made
+    double max_weight_ = 0.0; ///< that a fit is held to; 0: none
 };
 
 } // namespace

@@ -108,8 +108,8 @@ void check_bins(const LocalOptions& options) {
                 options.shape == LocalShape::automatic,
             "shape is not a LocalShape");
     require(options.shape != LocalShape::halvings || may_be_halvings(options),
-            "one tree of halvings is for bins that share it, without max_weight, and beside no "
-            "MIS partner but the cosine by the balance heuristic");
+            "one tree of halvings is for bins that share it, and beside no MIS partner but the cosine by the balance "
+            "heuristic");
     require(options.shape != LocalShape::small || !options.visibility.point,
             "the small shape has no visibility cells");
 }
@@ -117,7 +117,7 @@ void check_bins(const LocalOptions& options) {
 } // namespace
 
 bool may_be_halvings(const LocalOptions& options) {
-    return options.sharing && options.max_weight == 0.0 &&
+    return options.sharing &&
            (options.mis.kind == ACDF_PARTNER_NONE ||
             (options.mis.kind == ACDF_PARTNER_COSINE && options.mis.heuristic == ACDF_HEURISTIC_BALANCE));
 }

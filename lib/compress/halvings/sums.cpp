@@ -28,6 +28,14 @@ float unit_for(float largest) {
     return std::ldexp(1.0f, std::clamp(31 - step, -126, 126));
 }
 
+double peak_of(const float* peaks, const HalvedAxes& axes, HalvedBox box) {
+    const std::uint32_t begin = axes.columns.low(box.columns), end = axes.columns.high(box.columns);
+    float largest = 0.0f;
+    for (std::size_t r = axes.rows.low(box.rows); r < axes.rows.high(box.rows); ++r)
+        largest = std::max(largest, stretch_of(peaks + r * axes.columns.steps() + begin, end - begin).largest);
+    return double{largest} * axes.measure(box);
+}
+
 HalvedSums::SquareRows::SquareRows(const Grid& of)
     : grid(of), unit(unit_for(largest_of(of))), column_measure(of.measure[1].begin(), of.measure[1].end()) {}
 
@@ -70,12 +78,7 @@ double HalvedSums::weight(HalvedBox box) const {
 
 double HalvedSums::peak(HalvedBox box) const {
     if (!(mean_ > 0.0)) return 0.0;
-    const float* peaks = grid_.peaks ? grid_.peaks : grid_.values;
-    const std::uint32_t begin = axes_.columns.low(box.columns), end = axes_.columns.high(box.columns);
-    float largest = 0.0f;
-    for (std::size_t r = axes_.rows.low(box.rows); r < axes_.rows.high(box.rows); ++r)
-        largest = std::max(largest, stretch_of(peaks + r * grid_.shape[1] + begin, end - begin).largest);
-    return double{largest} * axes_.measure(box) / mean_;
+    return peak_of(grid_.peaks ? grid_.peaks : grid_.values, axes_, box) / mean_;
 }
 
 } // namespace acdf::compress

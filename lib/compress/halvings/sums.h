@@ -15,6 +15,13 @@ namespace acdf::compress {
 /// 2^16, so that a frame that is a little brighter has the same.
 float unit_for(float largest);
 
+/// The largest f of each texel, which `peaks` or else values have.
+inline const float* peaks_of(const Target& target) {
+    return (target.peaks.empty() ? target.values : target.peaks).data();
+}
+/// The largest of `peaks`, one a step, in a box, times its measure.
+double peak_of(const float* peaks, const HalvedAxes& axes, HalvedBox box);
+
 /// Costs of a grid (PAPER.md §5; beside an MIS partner compress/partner.h).
 class HalvedSums final : public HalvedCosts {
 public:

@@ -231,24 +231,6 @@ TEST(LocalFiles, TiltedCurvesAreMeasured) {
     }
 }
 
-TEST(LocalFiles, WeightsStayBelowANumber) {
-    build::LocalOptions options;
-    options.goal.budget = 32768;
-    const build::Local free = build(options);
-    options.max_weight = 3.0;
-    ASSERT_GT(free.accuracy.max_weight, 1.5 * options.max_weight); // else the bound would do nothing
-    const build::Local bounded = build(options);
-    EXPECT_LE(bounded.accuracy.max_weight, options.max_weight);
-    EXPECT_LE(bounded.bytes.size(), 32768u);
-    EXPECT_EQ(bounded.accuracy.support_violations, 0u);
-    EXPECT_LE(bounded.accuracy.relative_variance, 1.5 * free.accuracy.relative_variance);
-    EXPECT_NE(option_text("", options).find("--max-weight 3 "), std::string::npos);
-    std::vector<build::Normal> others; // between those that were measured
-    for (const build::Normal& n : build::random_normals(300)) others.push_back({n[1], n[2], n[0]});
-    const auto elsewhere = summary(build::measure_normals(load(bounded), lit_probe(), others));
-    EXPECT_LE(elsewhere.max_weight, 1.5 * options.max_weight);
-}
-
 TEST(LocalFiles, TreesOfTheMiddleNormalAreBiased) {
     build::LocalOptions options = separate(ACDF_FIT_CDF);
     options.bin_target = BinTarget::centre;

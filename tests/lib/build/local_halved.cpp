@@ -99,15 +99,64 @@ TEST(HalvedLocalFiles, OfFewNormals) {
     EXPECT_FALSE(file.local().stored(down));
 }
 
+void expect_same_of_threads(const Target& target, const build::LocalOptions& options) {
+    std::vector<std::uint8_t> alone, together;
+    compress::with_threads(1, [&] { alone = build::build_local(target, {}, options).bytes; });
+    compress::with_threads(0, [&] { together = build::build_local(target, {}, options).bytes; });
+    EXPECT_EQ(alone, together);
+}
+
 TEST(HalvedLocalFiles, AreTheSameOfAnyNumberOfThreads) {
     const Target target = sky(128, 64);
-    for (const AcdfPartnerKind kind : {ACDF_PARTNER_NONE, ACDF_PARTNER_COSINE}) {
-        build::LocalOptions options = of_budget(24000);
-        options.mis.kind = kind;
-        std::vector<std::uint8_t> alone, together;
-        compress::with_threads(1, [&] { alone = build::build_local(target, {}, options).bytes; });
-        compress::with_threads(0, [&] { together = build::build_local(target, {}, options).bytes; });
-        EXPECT_EQ(alone, together);
+    build::LocalOptions options = of_budget(24000);
+    expect_same_of_threads(target, options);
+    options.max_weight = 8.0;
+    expect_same_of_threads(target, options);
+    options.max_weight = 0.0;
+    options.mis.kind = ACDF_PARTNER_COSINE;
+    expect_same_of_threads(target, options);
+}
+
+/// At other normals than those that were measured when it was built.
+double weight_elsewhere(const build::Local& made, const Target& target) {
+    std::vector<build::Normal> others;
+    for (const build::Normal& n : build::random_normals(300)) others.push_back({n[1], n[2], n[0]});
+    File file;
+    EXPECT_TRUE(File::from_memory(made.bytes.data(), made.bytes.size(), file).ok());
+    return summary(build::measure_normals(file, target, others)).max_weight;
+}
+
+build::Local expect_bounded(const Target& target, double max_weight, const char* what) {
+    build::LocalOptions options = of_budget(32768);
+    const build::Local free = expect_made(target, options, what);
+    EXPECT_GT(free.accuracy.max_weight, 1.5 * max_weight) << what; // else the bound would do nothing
+    options.max_weight = max_weight;
+    const build::Local bounded = expect_made(target, options, what);
+    EXPECT_LE(bounded.accuracy.max_weight, max_weight) << what;
+    EXPECT_LE(bounded.accuracy.relative_variance, 1.3 * free.accuracy.relative_variance) << what;
+    EXPECT_NE(option_text("", options).find("--max-weight"), std::string::npos);
+    return bounded;
+}
+
+TEST(HalvedLocalFiles, WeightsStayBelowANumber) {
+    EXPECT_LE(weight_elsewhere(expect_bounded(sky(128, 64), 5.0, "a sky"), sky(128, 64)), 7.5);
+    expect_bounded(sky(96, 96, ACDF_PARAM_OCTAHEDRAL), 5.0, "a square");
+    Target target = sky(128, 64); // what a filter makes of texels
+    for (const float value : target.values) target.peaks.push_back(1.5f * value);
+    expect_bounded(target, 8.0, "peaks");
+    expect_bounded(map_of(64, 32, ACDF_PARAM_LATLONG,
+                          [](std::size_t i) { return i < 1024 ? 1.0f + static_cast<float>(i % 5) : 0.0f; }),
+                   5.0, "nothing below");
+}
+
+TEST(HalvedLocalFiles, ABoundThatNoFileKeepsIsRefused) {
+    build::LocalOptions options = of_budget(20000);
+    options.max_weight = 1.0; // every sample alike: of texels, not of the cosine within them
+    try {
+        build::build_local(sky(64, 32), {}, options);
+        FAIL() << "it is held";
+    } catch (const std::runtime_error& error) {
+        EXPECT_NE(std::string(error.what()).find("a largest weight of 1 is out of reach"), std::string::npos);
     }
 }
 
@@ -118,6 +167,11 @@ TEST(HalvedLocalFiles, ReachTheirGoals) {
     options.goal = {Goal::Kind::variance, 0, 0, 0.2};
     const build::Local reached = build::build_local(target, {}, options);
     EXPECT_LE(reached.accuracy.relative_variance, 0.2);
+    options.max_weight = 10.0;
+    const build::Local bounded = build::build_local(target, {}, options);
+    EXPECT_LE(bounded.accuracy.relative_variance, 0.2);
+    EXPECT_LE(bounded.accuracy.max_weight, 10.0);
+    options.max_weight = 0.0;
     options.goal = {Goal::Kind::cells, 3000, 0, 0.0};
     const build::Local made = build::build_local(target, {}, options);
     File file;

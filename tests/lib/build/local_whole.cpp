@@ -128,7 +128,7 @@ TEST(PointsWithoutNormal, OfOtherGoals) {
         options.goal = builder::Goal::of_variance(0.5);
         expect_serves_points(options, "variance " + std::to_string(int(shape)));
     }
-    builder::LocalOptions options = of_budget(48 << 10, builder::LocalShape::small);
+    builder::LocalOptions options = of_budget(48 << 10, builder::LocalShape::halvings);
     options.max_weight = 30.0;
     expect_serves_points(options, "largest weight");
     options = of_budget(48 << 10, builder::LocalShape::automatic);

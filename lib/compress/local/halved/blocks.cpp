@@ -77,6 +77,12 @@ Blocks::Blocks(const Target& grid)
     });
 }
 
+HalvedBox Blocks::around(HalvedBox box) const {
+    while (box.rows >= 2 * rows()) box.rows /= 2;
+    while (box.columns >= 2 * columns()) box.columns /= 2;
+    return box;
+}
+
 HalvedBox Blocks::block_of(HalvedBox box) const {
     return {at_depth(box.rows, rows()), at_depth(box.columns, columns())};
 }

@@ -41,6 +41,8 @@ public:
     /// Where a box of blocks stands in an array of size().
     std::size_t index(HalvedBox box) const { return std::size_t{box.rows} * 2 * columns() + box.columns; }
     std::size_t size() const { return std::size_t{4} * rows() * columns(); }
+    /// The smallest box of blocks that holds a box of the grid.
+    HalvedBox around(HalvedBox box) const;
     /// The block in the middle of a box of the grid, or that holds it.
     HalvedBox block_of(HalvedBox box) const;
     const BoxCone& cone(HalvedBox box) const { return cones_[index(box)]; }

@@ -4,6 +4,7 @@
 #include "compress/halvings/row_size.h"
 #include "compress/halvings/rows.h"
 #include "compress/local/halved/filled_rows.h"
+#include "compress/local/halved/least_parts.h"
 #include "compress/local/halved/tile_light.h"
 #include "compress/parallel.h"
 
@@ -22,6 +23,8 @@ constexpr double kFilledSubdivisions = 8.0, kFilledAt = 131072.0, kFilledRises =
 // Beside a partner cells are worth little until they part what is brighter than a threshold from what is not: gains
 // do not foretell it, and a tile has at least so many cells.
 constexpr std::size_t kFewestCells = 4;
+constexpr double kWeightOfCells = 0.6;  // of a bound on weights; the rest is for cosines of what lies in a tile
+constexpr int kRaises = 4;              // of rows whose codes do not keep it
 constexpr std::size_t kFewestCodes = 4; // of those foreseen, one in so many
 constexpr double kFewestRows = 387.0, kFewestAt = 1048576.0, kFewestFalls = 0.6; // rows that a size has at least
 
@@ -153,7 +156,9 @@ std::size_t LocalHalvingsFitter::codes_of(const std::vector<HalvedNode>& top, co
     return codes;
 }
 
-std::vector<double> LocalHalvingsFitter::weights_of(const std::vector<HalvedNode>& nodes, std::size_t top) const {
+/// Of leaves, and of nodes what is below. Samples of a leaf weigh at most `heaviest` times those of its tile.
+std::vector<double> LocalHalvingsFitter::weights_of(const std::vector<HalvedNode>& nodes, std::size_t top,
+                                                    double heaviest) const {
     std::vector<double> out(nodes.size()), moments(nodes.size()); // of the light alone
     const std::size_t below = 2 * top + 1;
     for (std::size_t i = nodes.size(); i-- > 0;) {
@@ -164,6 +169,9 @@ std::vector<double> LocalHalvingsFitter::weights_of(const std::vector<HalvedNode
         } else {
             const double alone = shared_->alone(nodes[i].box);
             out[i] = filled_costs_ ? filled_costs_->weight(nodes[i].box) : alone;
+            if (heaviest > 0.0)
+                out[i] = std::max(out[i], peak_of(peaks_of(target_), shared_->costs().axes(), nodes[i].box) *
+                                              unit_ / heaviest);
             moments[i] = out[i] > 0.0 ? alone * (alone / out[i]) : 0.0;
         }
         // Above tiles only points without a normal follow the codes that all share, without a partner.
@@ -206,12 +214,18 @@ void code(const RowTree& tree, const NormalBins& bins, RowParts& parts, LocalHal
 } // namespace
 
 void LocalHalvingsFitter::mixed(const RowTree& tree, const std::vector<HalvedNode>& nodes, const NormalBins& bins,
-                                LocalHalvings& out) const {
+                                double max_weight, LocalHalvings& out) const {
     const std::vector<HalvedBox> tiles = boxes_of(tree, nodes);
     const BlockMoments light = light_of_tiles(blocks_, *shared_, *squares_, tree, nodes);
     const MixedRows rows(light, tiles, bins);
-    RowParts parts = rows.parts();
-    code(tree, bins, parts, out);
+    RowParts wanted = rows.parts(), parts;
+    std::optional<LeastParts> least;
+    if (std::isfinite(max_weight)) least.emplace(blocks_, shared_->costs().axes(), unit_, max_weight, tree, nodes);
+    for (int step = 0; step <= kRaises; ++step) { // a code may stand for less than half of what is wanted
+        parts = wanted;
+        code(tree, bins, parts, out);
+        if (!least || !least->raise(bins, parts, rows.surplus(parts), wanted)) break;
+    }
     out.mixing_variance = rows.variance(parts);
 }
 
@@ -238,17 +252,18 @@ void LocalHalvingsFitter::filled(const RowTree& tree, const std::vector<HalvedNo
 }
 
 LocalHalvings LocalHalvingsFitter::grown(std::vector<HalvedNode> top, std::size_t all, const NormalBins& bins,
-                                         std::uint32_t code_bits, const Progress& progress) const {
+                                         const LocalHalvingsSize& size, const Progress& progress) const {
     const std::size_t halvings = top.size() / 2;
-    HalvedGrowth growth({{0, all + 1}}, {kAlike});
+    const double heaviest = std::isfinite(size.max_weight) ? kWeightOfCells * size.max_weight : 0.0;
+    HalvedGrowth growth({{0, all + 1}}, {kAlike, 0.0, heaviest});
     growth.run_below(std::move(top), below(), Loop(false), [&](double share) { progress(0.6 * share); });
-    const RowTree tree(growth.nodes(), halvings, weights_of(growth.nodes(), halvings),
+    const RowTree tree(growth.nodes(), halvings, weights_of(growth.nodes(), halvings, heaviest),
                        {target_.row_axis, target_.column_axis});
     progress(0.7);
     LocalHalvings out;
-    out.code_bits = code_bits;
+    out.code_bits = size.code_bits;
     if (ratio_ > 0.0) filled(tree, growth.nodes(), bins, out);
-    else mixed(tree, growth.nodes(), bins, out);
+    else mixed(tree, growth.nodes(), bins, size.max_weight, out);
     progress(1.0);
     return out;
 }
@@ -270,7 +285,7 @@ LocalHalvings LocalHalvingsFitter::fit(const NormalBins& bins, const LocalHalvin
     }
     const auto attempt = [&](std::size_t most_codes, double begin, double end) {
         const std::size_t all = std::min(halvings_within(size.bytes, most_codes, size.code_bits), size.halvings);
-        return grown(top, all, bins, size.code_bits, [&](double share) {
+        return grown(top, all, bins, size, [&](double share) {
             if (progress) progress(begin + share * (end - begin));
         });
     };

@@ -35,6 +35,8 @@ struct LocalHalvingsSize {
     std::size_t top = 0;                                            ///< halvings with codes of rows, at most
     std::size_t halvings = std::numeric_limits<std::size_t>::max(); ///< of all, at most
     std::uint64_t bytes = 0;                                        ///< of HALV and NORM together, at most
+    /// The largest weight over the mean, as far as bins show it; not beside an MIS partner.
+    double max_weight = std::numeric_limits<double>::infinity();
 };
 
 /// Fits of one probe, of any size. Deterministic for any number of threads.
@@ -63,9 +65,9 @@ private:
     }
     std::size_t codes_of(const std::vector<HalvedNode>& top, const NormalBins& bins) const;
     LocalHalvings grown(std::vector<HalvedNode> top, std::size_t all, const NormalBins& bins,
-                        std::uint32_t code_bits, const Progress& progress) const;
-    std::vector<double> weights_of(const std::vector<HalvedNode>& nodes, std::size_t top) const;
-    void mixed(const RowTree& tree, const std::vector<HalvedNode>& nodes, const NormalBins& bins,
+                        const LocalHalvingsSize& size, const Progress& progress) const;
+    std::vector<double> weights_of(const std::vector<HalvedNode>& nodes, std::size_t top, double heaviest) const;
+    void mixed(const RowTree& tree, const std::vector<HalvedNode>& nodes, const NormalBins& bins, double max_weight,
                LocalHalvings& out) const;
     void filled(const RowTree& tree, const std::vector<HalvedNode>& nodes, const NormalBins& bins,
                 LocalHalvings& out) const;

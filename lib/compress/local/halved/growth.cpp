@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace acdf::compress {
 namespace {
@@ -125,16 +126,20 @@ SharedLight::SharedLight(const Blocks& blocks, std::vector<float> worth, double 
     const std::vector<std::uint32_t> row = blocks_of_texels(blocks.borders(0)),
                                      column = blocks_of_texels(blocks.borders(1));
     values_.resize(grid.values.size());
+    std::vector<double> sums(grid.rows);
     parallel_for(std::uint32_t{0}, grid.rows, [&](std::uint32_t r) {
         const float* of_row = worth_.data() + blocks.index({blocks.rows() + row[r], blocks.columns()});
-        for (std::uint32_t c = 0; c < grid.columns; ++c)
-            values_[std::size_t{r} * grid.columns + c] =
-                positive_float(double{grid.row(r)[c]} * unit * double{of_row[column[c]]});
+        for (std::uint32_t c = 0; c < grid.columns; ++c) {
+            float& value = values_[std::size_t{r} * grid.columns + c];
+            value = positive_float(double{grid.row(r)[c]} * unit * double{of_row[column[c]]});
+            sums[r] += double{value} * grid.column_measure[c];
+        }
     });
     Grid of = grid_of(grid);
     of.values = values_.data();
     of.peaks = of.left = of.least = nullptr;
     costs_ = std::make_unique<HalvedSums>(of);
+    costs_->set_mean(std::inner_product(sums.begin(), sums.end(), grid.row_measure.begin(), 0.0));
 }
 
 } // namespace acdf::compress

@@ -157,6 +157,22 @@ RowParts MixedRows::parts() const {
     return rows;
 }
 
+std::vector<float> MixedRows::surplus(const RowParts& rows) const {
+    std::vector<float> of_mixtures(mixtures_.of.size());
+    parallel_parts(0, of_mixtures.size(), 8, [&](std::size_t first, std::size_t last) {
+        std::vector<float> mixed(tiles_.size());
+        for (std::size_t j = first; j < last; ++j) {
+            mix(j, rows, mixed.data());
+            const MixtureSums sums = add_up(cost(j), mixed.data(), mixed.size());
+            if (sums.cost > 0.0) of_mixtures[j] = static_cast<float>(sums.mixed / sums.cost);
+        }
+    });
+    std::vector<float> out(rows.size(), 1.0f);
+    for (std::size_t b = 0; b < out.size(); ++b)
+        for (const std::uint32_t j : mixtures_.near[b]) out[b] = std::max(out[b], of_mixtures[j]);
+    return out;
+}
+
 double MixedRows::variance(const RowParts& rows) const {
     double sum = 0.0, weight = 0.0;
     std::vector<float> mixed(tiles_.size());

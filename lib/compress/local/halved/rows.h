@@ -22,6 +22,8 @@ public:
 
     /// A part is positive wherever the bin sees light of the tile; their sum is what the bin's light costs.
     RowParts parts() const;
+    /// Of each bin: how many times what their light costs mixtures that it serves sample, at most.
+    std::vector<float> surplus(const RowParts& rows) const;
     /// What mixing adds to the relative variance of a sample, mean over mixtures, where rows give tiles so much
     /// each.
     double variance(const RowParts& rows) const;
