@@ -333,7 +333,7 @@ void EnvConversion::add_options(CLI::App& command) {
     add_renderer(command, renderer_);
     add_repairs(command, input_);
     add_fit_options(command);
-    add_partner(command, environment_.mis, true);
+    add_partner(command, environment_.mis, ACDF_KIND_ENVIRONMENT);
     scene_.add(command,
                "The normals that the partner lights: a mesh (.obj, .ply, .instances), a normal pass (.exr) or a "
                "list of normals "

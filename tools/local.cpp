@@ -427,7 +427,7 @@ void LocalConversion::add_options(CLI::App& command) {
     add_bins(command);
     add_size(command);
     add_shape(command);
-    add_partner(command, local_.mis, false);
+    add_partner(command, local_.mis, ACDF_KIND_LOCAL);
     add_separate(command);
     add_target_options(command, local_.target);
     add_codec(command, local_.codec);

@@ -181,6 +181,7 @@ TEST_F(LocalCommand, WrongUsageIsOneLine) {
     expect_usage({"--no-sharing", "--target-variance", "0.1"}, "--target-variance");
     expect_usage({"--cosine-share", "1"}, "--cosine-share");
     expect_usage({"--shape", "round"}, "--shape");
+    expect_usage({"--mis", "brdf"}, "--mis");
     for (const char* other : {"--no-sharing"}) expect_usage({"--shape", "halvings", other}, other);
 }
 
@@ -202,8 +203,8 @@ TEST_F(LocalCommand, IsOneTreeOfHalvingsByDefault) {
     EXPECT_EQ(run_acdf({"validate", output}).code, 0);
     EXPECT_LT(report["relative_variance"], made({"--shape", "small", "--budget", "48KiB"})["relative_variance"]);
     EXPECT_EQ(made({"--shape", "auto", "--budget", "24KiB", "--max-weight", "50"}).at("shape"), "halvings");
-    // What it has not.
-    EXPECT_EQ(made({"--shape", "auto", "--budget", "48KiB", "--mis", "brdf"}).at("shape"), "small");
+    EXPECT_EQ(made({"--shape", "auto", "--budget", "48KiB", "--mis", "cosine", "--heuristic", "power"}).at("shape"),
+              "halvings");
 }
 
 TEST_F(LocalCommand, TheSmallestSizeThatIsReportedIsPossible) {

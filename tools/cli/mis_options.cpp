@@ -8,23 +8,22 @@
 
 namespace acdf::tools {
 
-void add_partner(CLI::App& command, builder::Partner& partner, bool mean) {
+void add_partner(CLI::App& command, builder::Partner& partner, AcdfKind kind) {
     const char* group = "MIS partner";
+    const bool local = kind == ACDF_KIND_LOCAL;
+    const std::string names = local ? "cosine (diffuse surfaces, and glossy ones)"
+                                    : "cosine (diffuse surfaces), brdf (lobes of several widths), mean (a partner "
+                                      "with the same pdf everywhere: Karlik et al. 2019)";
     command
         .add_option_function<std::string>(
             "--mis",
-            [&partner, mean](const std::string& text) {
-                if (!parse_partner(text, partner) || (!mean && partner.kind == ACDF_PARTNER_MEAN))
-                    throw CLI::ValidationError("--mis", "'" + text + "' is none of none, cosine, brdf" +
-                                                            (mean ? ", mean" : ""));
+            [&partner, local](const std::string& text) {
+                if (!parse_partner(text, partner) || (local && partner.kind > ACDF_PARTNER_COSINE))
+                    throw CLI::ValidationError("--mis", "'" + text + "' is none of none, cosine" +
+                                                            (local ? "" : ", brdf, mean"));
             },
-            mean ? "The sampling technique that your renderer combines with the file by multiple importance "
-                   "sampling: cosine (diffuse surfaces), brdf (lobes of several widths), mean (a partner with the "
-                   "same pdf everywhere: Karlik et al. 2019). The file's pdf is 0 where the partner alone is "
-                   "enough: never use such a file alone"
-                 : "The sampling technique that your renderer combines with the file by multiple importance "
-                   "sampling: cosine (diffuse surfaces), brdf (lobes of several widths). The file's pdf is 0 where "
-                   "the partner alone is enough: never use such a file alone")
+            "The sampling technique that your renderer combines with the file by multiple importance sampling: " +
+                names + ". The file's pdf is 0 where the partner alone is enough: never use such a file alone")
         ->option_text("NAME [none]")
         ->group(group);
     add_weighing(command, partner);

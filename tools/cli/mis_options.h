@@ -9,8 +9,8 @@ class App;
 
 namespace acdf::tools {
 
-/// `mean`: whether there is --mis mean.
-void add_partner(CLI::App& command, builder::Partner& partner, bool mean);
+/// Of files of a kind: local ones have the cosine alone.
+void add_partner(CLI::App& command, builder::Partner& partner, AcdfKind kind);
 /// Adds --shares and --heuristic.
 void add_weighing(CLI::App& command, builder::Partner& partner);
 

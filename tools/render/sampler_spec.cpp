@@ -158,10 +158,8 @@ void read_partner(const std::string& options, SamplerSpec& spec) {
         (mis.kind > ACDF_PARTNER_COSINE || mis.heuristic != ACDF_HEURISTIC_BALANCE || mis.light != mis.other ||
          spec.of_scene))
         fail(spec.text, "takes --mis cosine alone");
-    if (spec.kind == SamplerKind::ideal && spec.mis.kind > ACDF_PARTNER_COSINE)
+    if ((spec.kind == SamplerKind::ideal || spec.kind == SamplerKind::local) && spec.mis.kind > ACDF_PARTNER_COSINE)
         fail(spec.text, "takes --mis cosine alone");
-    if (spec.kind == SamplerKind::local && spec.mis.kind == ACDF_PARTNER_MEAN)
-        fail(spec.text, "--mis mean is for env");
 }
 
 SamplerSpec parse_single(const std::string& whole) {

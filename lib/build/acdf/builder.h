@@ -173,7 +173,7 @@ private:
 /// What a file is to be combined with, by multiple importance sampling. Such a file has pdf 0 where the
 /// partner is enough: it is not to be used alone, and says so (requires_mis of its view).
 struct Partner {
-    /// ACDF_PARTNER_COSINE: cos / pi around the normal. ACDF_PARTNER_BRDF: lobes as BRDFs have them.
+    /// ACDF_PARTNER_COSINE: cos / pi around the normal. ACDF_PARTNER_BRDF: lobes as BRDFs have them, and
     /// ACDF_PARTNER_MEAN: as if the partner were the same everywhere (Karlik et al. 2019), of environments alone.
     /// ACDF_PARTNER_TABLE: another table, of tables alone.
     AcdfPartnerKind kind = ACDF_PARTNER_NONE;

@@ -108,19 +108,14 @@ void check_bins(const LocalOptions& options) {
                 options.shape == LocalShape::automatic,
             "shape is not a LocalShape");
     require(options.shape != LocalShape::halvings || may_be_halvings(options),
-            "one tree of halvings is for bins that share it, and beside no MIS partner but the cosine by the balance "
-            "heuristic");
+            "one tree of halvings is for bins that share it");
     require(options.shape != LocalShape::small || !options.visibility.point,
             "the small shape has no visibility cells");
 }
 
 } // namespace
 
-bool may_be_halvings(const LocalOptions& options) {
-    return options.sharing &&
-           (options.mis.kind == ACDF_PARTNER_NONE ||
-            (options.mis.kind == ACDF_PARTNER_COSINE && options.mis.heuristic == ACDF_HEURISTIC_BALANCE));
-}
+bool may_be_halvings(const LocalOptions& options) { return options.sharing; }
 
 void check(const TargetOptions& options) {
     check(options.channels);
@@ -189,7 +184,7 @@ void check(const LocalOptions& options) {
     check(options.codec);
     check(options.source);
     check_text(options.normals_text);
-    check(options.mis, ACDF_PARTNER_BRDF);
+    check(options.mis, ACDF_PARTNER_COSINE);
     require(options.mis.kind == ACDF_PARTNER_NONE || (options.sharing && options.cosine_share == 0.0),
             "an MIS partner is for bins that share tiles, without a cosine_share");
     if (!options.sharing) check(options.fit);

@@ -239,6 +239,7 @@ def build_local(
     max_weight: of the samples of all normals that accuracy is measured for.
     cosine_share: of samples that are taken around the normal instead, in [0, 0.99].
     sharing: bins share tiles; else each has a tree of its own.
+    mis: "none" or "cosine".
     shape: "halvings", one tree with a row of codes for each bin: the least noise for its bytes; "small", curves in tiles, for
         max_weight and MIS partners other than the cosine; "auto" makes halvings, or small where options ask for what that has not.
     """

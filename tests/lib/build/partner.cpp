@@ -188,6 +188,9 @@ TEST(Partner, OptionsThatContradictItAreRefused) {
     local.cosine_share = 0.2;
     builder::Local made;
     EXPECT_EQ(builder::local(pixels, local, made).code, builder::ErrorCode::invalid_argument);
+    local.cosine_share = 0.0;
+    local.mis.kind = ACDF_PARTNER_BRDF;
+    EXPECT_EQ(builder::local(pixels, local, made).code, builder::ErrorCode::invalid_argument);
 }
 
 } // namespace

@@ -140,8 +140,7 @@ inline const std::vector<Kind> kinds{{false, {ACDF_PARTNER_COSINE, ACDF_HEURISTI
                                      {false, {ACDF_PARTNER_MEAN, ACDF_HEURISTIC_BALANCE, 1.0, 1.0}},
                                      {true, {ACDF_PARTNER_COSINE, ACDF_HEURISTIC_BALANCE, 1.0, 1.0}},
                                      {true, {ACDF_PARTNER_COSINE, ACDF_HEURISTIC_BALANCE, 3.0, 1.0}},
-                                     {true, {ACDF_PARTNER_COSINE, ACDF_HEURISTIC_POWER, 1.0, 1.0}},
-                                     {true, {ACDF_PARTNER_BRDF, ACDF_HEURISTIC_BALANCE, 1.0, 1.0}}};
+                                     {true, {ACDF_PARTNER_COSINE, ACDF_HEURISTIC_POWER, 1.0, 1.0}}};
 
 template <class Options, class Result, class Build>
 void make_by(const Build& build, const Probe& probe, const Kind& kind, std::uint64_t budget, Made& out) {

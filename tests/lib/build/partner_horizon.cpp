@@ -79,7 +79,7 @@ void expect_lamps_are_sampled(const std::vector<Lamp>& lamps, bool square, std::
     });
     const compress::Target grid = square ? acdf_test::octahedral(latlong) : latlong;
     const std::pair<AcdfPartnerKind, AcdfHeuristic> partners[] = {{ACDF_PARTNER_COSINE, ACDF_HEURISTIC_BALANCE},
-                                                                  {ACDF_PARTNER_BRDF, ACDF_HEURISTIC_POWER}};
+                                                                  {ACDF_PARTNER_COSINE, ACDF_HEURISTIC_POWER}};
     for (const auto& [kind, heuristic] : partners) {
         build::Normal at{};
         const double variance = worst(grid, kind, heuristic, 48 << 10, at);
@@ -163,7 +163,7 @@ void expect_bounded_weights(const std::vector<Lamp>& lamps, const std::vector<do
     });
     if (square) grid = acdf_test::octahedral(grid);
     EXPECT_LE(largest_of_allowed(grid, ACDF_PARTNER_COSINE, ACDF_HEURISTIC_BALANCE), 1.0) << lamps[0].column;
-    EXPECT_LE(largest_of_allowed(grid, ACDF_PARTNER_BRDF, ACDF_HEURISTIC_POWER), 1.0) << lamps[0].column;
+    EXPECT_LE(largest_of_allowed(grid, ACDF_PARTNER_COSINE, ACDF_HEURISTIC_POWER), 1.0) << lamps[0].column;
 }
 
 /// Bins whose horizon hides the middle of the only lamp have samples for what is above it.
@@ -186,7 +186,7 @@ TEST(PartnerAtTheHorizon, WeightsAreBoundedWhereARowIsLit) {
     const compress::Target row =
         acdf_test::texel_target(20, 10, [](std::uint32_t, std::uint32_t r) { return r == 9 ? 0.5 : 0.0; });
     EXPECT_LE(largest_of_allowed(row, ACDF_PARTNER_COSINE, ACDF_HEURISTIC_BALANCE), 1.0);
-    EXPECT_LE(largest_of_allowed(row, ACDF_PARTNER_BRDF, ACDF_HEURISTIC_POWER), 1.0);
+    EXPECT_LE(largest_of_allowed(row, ACDF_PARTNER_COSINE, ACDF_HEURISTIC_POWER), 1.0);
 }
 
 TEST(PartnerAtTheHorizon, LampsOfWhichABinSeesOne) {

@@ -225,7 +225,7 @@ TEST(RenderSampler, TextsAreUnderstood) {
     for (const char* text :
          {"local:1MB --mis cosine", "mis(local --mis mean,cosine)", "mis(full-cdf --scene,cosine)",
           "mis(env --mis,cosine)", "mis(env --mis sun,cosine)", "mis(env --shares 2,cosine)",
-          "mis(auto:env --mis cosine,auto:cosine)", "mis(ideal --mis brdf,cosine)",
+          "mis(auto:env --mis cosine,auto:cosine)", "mis(ideal --mis brdf,cosine)", "mis(local --mis brdf,cosine)",
           "mis(learned --mis brdf,cosine)", "mis(learned --mis cosine --shares 2:1,cosine)"})
         EXPECT_THROW(parse_sampler(text), SpecError) << text;
     const SamplerSpec compensated = parse_sampler("mis-compensated");

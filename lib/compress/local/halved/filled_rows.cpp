@@ -39,7 +39,7 @@ double knot(std::size_t k) { return std::ldexp(1.0 + 0.25 * double(k % 4), kFirs
 
 FilledRows::FilledRows(const BlockMoments& light, const std::vector<HalvedBox>& tiles,
                        const std::vector<std::vector<FilledCell>>& cells, const NormalBins& bins,
-                       const Radiances& radiances, double ratio)
+                       const Radiances& radiances, double ratio, AcdfHeuristic heuristic)
     : tiles_(tiles), bins_(bins), mixtures_(bins), ratio_(ratio), lit_(bins.normals.size()),
       lit_mixture_(mixtures_.of.size()), place_(bins.normals.size()), scale_(tiles.size()),
       moment_(tiles.size() * kKnots), fall_(tiles.size() * kKnots) {
@@ -68,9 +68,10 @@ FilledRows::FilledRows(const BlockMoments& light, const std::vector<HalvedBox>& 
             if (!(cell.square > 0.0)) continue;
             const double density = cell.share / cell.measure * measure;
             for (std::size_t k = 0; k < kKnots; ++k) {
-                const double both = (knot(k) * density + 1.0) / ACDF_PI;
-                moment_[t * kKnots + k] += static_cast<float>(cell.square / both);
-                fall_[t * kKnots + k] += static_cast<float>(cell.square * density / measure / (both * both));
+                const double ours = knot(k) * density / ACDF_PI, theirs = 1.0 / ACDF_PI;
+                moment_[t * kKnots + k] += static_cast<float>(cell.square * second_moment(ours, theirs, heuristic));
+                fall_[t * kKnots + k] +=
+                    static_cast<float>(cell.square * density / measure * moment_fall(ours, theirs, heuristic));
             }
         }
     });
@@ -170,7 +171,8 @@ RowParts FilledRows::parts() const {
             for (std::size_t t = 0; t < row.size(); ++t) {
                 before += double{own_[b][t]};
                 if (row[t] > 0.0f && lower > 0.0f)
-                    row[t] *= std::clamp(std::sqrt(raise[t] / lower), 1.0f / kMostChange, kMostChange);
+                    row[t] *=
+                        std::clamp(std::sqrt(std::max(raise[t], 0.0f) / lower), 1.0f / kMostChange, kMostChange);
                 after += double{row[t]};
             }
             const auto scale = static_cast<float>(after > 0.0 ? before / after : 1.0);

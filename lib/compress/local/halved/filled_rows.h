@@ -18,13 +18,14 @@ struct FilledCell {
 };
 
 /// Where a mixture gives a tile the part P and its light has the cosine c, cells of density d have the second
-/// moment of the integral of f^2 / (ratio P d + c / pi): c times a sum that P / c alone decides.
+/// moment of the integral of f^2 / (ratio P d + c / pi), or what the power heuristic makes of both: c times a sum
+/// that P / c alone decides.
 class FilledRows {
 public:
     /// `cells`: of each tile. `light`: what normals that see it leave of each tile, as its cosines count.
     FilledRows(const BlockMoments& light, const std::vector<HalvedBox>& tiles,
                const std::vector<std::vector<FilledCell>>& cells, const NormalBins& bins,
-               const Radiances& radiances, double ratio);
+               const Radiances& radiances, double ratio, AcdfHeuristic heuristic);
 
     /// A part is 0 where the partner covers the tile.
     RowParts parts() const;

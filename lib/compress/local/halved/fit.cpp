@@ -37,7 +37,8 @@ std::size_t codes_in(const LocalHalvings& fit) {
 } // namespace
 
 LocalHalvingsFitter::LocalHalvingsFitter(const Target& target, const NormalBins& normals, const Partner& partner)
-    : target_(target), unit_(4.0 * ACDF_PI / integral(target)), blocks_(target), light_(blocks_) {
+    : target_(target), unit_(4.0 * ACDF_PI / integral(target)), blocks_(target), light_(blocks_),
+      heuristic_(partner.heuristic) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (partner) fill_light(few_normals(normals), partner.light / partner.other);
     else weigh_light(few_normals(normals));
@@ -242,7 +243,7 @@ void LocalHalvingsFitter::filled(const RowTree& tree, const std::vector<HalvedNo
             cells.back().push_back({alone * alone / measure, measure, leaf.share});
         }
     }
-    const FilledRows rows(light_, tiles, cells, bins, *radiances_, ratio_);
+    const FilledRows rows(light_, tiles, cells, bins, *radiances_, ratio_, heuristic_);
     RowParts parts = rows.parts();
     code(tree, bins, parts, out);
     out.records.assign(bins.normals.size(), {1.0f, 0.0f});

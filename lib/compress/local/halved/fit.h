@@ -43,7 +43,7 @@ struct LocalHalvingsSize {
 class LocalHalvingsFitter {
 public:
     /// `target` must outlive it. `normals`: bins of any number, weighed as normals occur. `partner`: none, or one
-    /// that follows the cosine, by the balance heuristic. Throws std::invalid_argument where the target has no
+    /// that follows the cosine. Throws std::invalid_argument where the target has no
     /// energy.
     LocalHalvingsFitter(const Target& target, const NormalBins& normals, const Partner& partner);
 
@@ -84,6 +84,7 @@ private:
     std::optional<double> mixing_;
     // Beside a partner:
     double ratio_ = 0.0; ///< samples of ours for one of the partner's; 0: there is none
+    AcdfHeuristic heuristic_ = ACDF_HEURISTIC_BALANCE;
     std::optional<Radiances> radiances_;
     std::optional<FilledLight> filled_light_;
     std::vector<BlockMoments> of_classes_;
