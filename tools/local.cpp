@@ -38,7 +38,7 @@ namespace {
 constexpr std::uint64_t kLocalMemory = 16 << 20, kLocalMemoryOfTexel = 16, kLocalPartnerOfTexel = 20;
 constexpr std::uint64_t kLocalMemoryOfByte = 170, kLocalPartnerOfByte = 170, kLocalCellsOfTexel = 1200;
 // Of bins with trees of their own.
-constexpr std::uint64_t kSeparateOfByte = 900, kSeparateOfTexel = 32, kSeparateOfKnot = 32;
+constexpr std::uint64_t kSeparateOfTexel = 32, kSeparateOfKnot = 32;
 constexpr std::uint64_t kLocalBytesOfCell = 5; // of a file
 /// Bytes of a file of a variance, about, times it.
 constexpr double kLocalBytesOfVariance = 16384.0;
@@ -111,17 +111,14 @@ void LocalConversion::set_separate() {
             if (given(option)) throw CLI::ValidationError(option, "is for --no-sharing");
         return;
     }
-    for (const char* option : {"--tiles", "--max-weight"})
+    if (visibility_) throw CLI::ValidationError("--visibility", "goes without --no-sharing");
+    for (const char* option : {"--tiles", "--max-weight", "--cells", "--budget", "--target-variance"})
         if (given(option)) throw CLI::ValidationError(option, "is for files whose bins share tiles");
-    if (given("--target-variance"))
-        throw CLI::ValidationError("--target-variance",
-                                   "is for files whose bins share tiles; use --budget or --cells");
-    const bool variance = fit.fit == ACDF_FIT_VARIANCE;
-    for (const char* option : {"--knots", "--eps"})
-        if (variance && given(option)) throw CLI::ValidationError(option, "is for --fit uniform, cdf and pdf");
-    for (const char* option : {"--cells", "--budget"})
-        if (!variance && given(option)) throw CLI::ValidationError(option, "is for --fit variance");
-    if (!variance && !given("--order")) fit.order = builder::Order::z;
+    if (!given("--fit")) fit.fit = ACDF_FIT_CDF;
+    if (fit.fit == ACDF_FIT_VARIANCE)
+        throw CLI::ValidationError("--fit", "is cdf, pdf or uniform with --no-sharing");
+    if (!given("--order")) fit.order = builder::Order::z;
+    local.goal.kind = builder::Goal::Kind::automatic;
     if (given("--knots")) {
         if (!parse_pair(knots_, ACDF_MAX_SEGMENTS, fit.phi_segments, fit.theta_segments))
             throw CLI::ValidationError("--knots", "needs two counts such as 30x30 (phi x theta)");
@@ -153,7 +150,7 @@ void LocalConversion::check() {
                 throw CLI::ValidationError("--shape", std::string("halvings goes without ") + option);
     if (!visibility_) return;
     if (!scene_.given()) throw CLI::ValidationError("--visibility", "needs --scene MESH");
-    for (const char* option : {"--no-sharing", "--cells", "--target-variance", "--max-weight"})
+    for (const char* option : {"--cells", "--target-variance", "--max-weight"})
         if (given(option)) throw CLI::ValidationError("--visibility", std::string("goes without ") + option);
 }
 
@@ -268,17 +265,14 @@ std::uint64_t LocalConversion::bytes_of_cells() const {
     case builder::Goal::Kind::variance:
         return static_cast<std::uint64_t>(std::min(kLocalBytesOfVariance / local_.goal.variance, 0x1p26));
     default:
-        return kLocalBytesOfCell * local_.goal.cells * (local_.sharing ? 1 : most_bins());
+        return kLocalBytesOfCell * local_.goal.cells;
     }
 }
 
 std::uint64_t LocalConversion::memory_of_separate(const TargetMemory& of) const {
     const builder::FitOptions& fit = local_.fit;
-    const std::uint64_t all = of.target + of.texels * kSeparateOfTexel, bins = most_bins();
-    if (fit.fit == ACDF_FIT_VARIANCE)
-        return all + std::min(bytes_of_cells() * kSeparateOfByte, bins * of.texels * kLocalCellsOfTexel);
     const std::uint64_t knots = std::uint64_t{fit.phi_segments} * fit.theta_segments;
-    return all + bins * kSeparateOfKnot * std::min(knots, of.texels);
+    return of.target + of.texels * kSeparateOfTexel + most_bins() * kSeparateOfKnot * std::min(knots, of.texels);
 }
 
 std::uint64_t LocalConversion::memory_of_shared(const TargetMemory& of) const {
@@ -361,8 +355,7 @@ void LocalConversion::add_bins(CLI::App& command) {
 void LocalConversion::add_size(CLI::App& command) {
     builder::LocalOptions& local = local_;
     add_goal(command, local.goal.cells, budget_, local.goal.variance,
-             {"Cells of what bins share, about; with --no-sharing: of a bin, in the mean", "N", "SIZE [1MiB]",
-              ", in the mean over normals", 16});
+             {"Cells of what bins share, about", "N", "SIZE [1MiB]", ", in the mean over normals", 16});
     add_max_weight(command, local.max_weight, ". It is measured over the normals whose variance is printed");
     command
         .add_option(
@@ -392,7 +385,9 @@ void LocalConversion::add_separate(CLI::App& command) {
     const char* group = "Trees of their own";
     command
         .add_flag("--no-sharing", no_sharing_,
-                  "A tree of its own for each bin, as in the paper, to compare with: larger and noisier")
+                  "A tree of its own for each bin, as in the paper, to compare with: larger and noisier. --fit cdf "
+                  "is then "
+                  "the default, beside pdf and uniform")
         ->group(group);
     add_fit(command, fit.fit, "How knots are chosen: as in acdf env")->group(group);
     command.add_option("--knots", knots_, "Segments of a curve over phi and over theta: as in acdf env")

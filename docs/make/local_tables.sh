@@ -88,8 +88,7 @@ paper() {
         build grace grace_probe.hdr angular --no-sharing --normals 25x10 $options
         jq -r --arg t "${text//_/ }" '"| " + $t + " | " + (.bytes|tostring) + " | " + (if .relative_variance then (.relative_variance*1e4|round/1e4|tostring) + " | " + (.gain*10|round/10|tostring) + "×" else "infinite | none" end) + " | " + ([.share_above_horizon,.least_share_above_horizon]|map(.*1000|round/10|tostring+" %")|join(", ")) + " | " + (.support_violations|tostring) + " |"' "$work/grace.json"
     done <<< "cdf,_of_the_centre_(as_published) --fit cdf --knots 128x128 --bin-target centre
-cdf,_of_the_bin's_mean --fit cdf --knots 128x128
-variance,_of_the_bin's_mean,_one_price --cells 4096"
+cdf,_of_the_bin's_mean --fit cdf --knots 128x128"
     build grace grace_probe.hdr angular --budget 1MB
     jq -r '"| shared, 1 MB, 12 | \(.bytes) | \(.relative_variance*1e4|round/1e4) | \(.gain*10|round/10)× | \([.share_above_horizon,.least_share_above_horizon]|map(.*1000|round/10|tostring+" %")|join(", ")) | \(.support_violations) |"' "$work/grace.json"
 }

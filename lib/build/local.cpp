@@ -232,26 +232,17 @@ Local build_separate(const compress::Target& target, const Source& source, const
     LocalDraft draft{{}, description_of(target, source, options, bins, {})};
     draft.description.chunks = {compress::local_chunk(static_cast<float>(options.cosine_share), {})};
     compress::FitOptions fit = options.fit;
-    fit.goal = options.goal;
     fit.file_size = [&](const compress::EncodedTree& tree) {
         return std::uint64_t{compress::store(tree, draft.description, options.codec).size()};
     };
     fit.progress = [&](double share) {
         if (progress) progress(0.9 * share, "fitting");
     };
-    const bool budgeted = options.goal.kind == Goal::Kind::budget && fit.fit == ACDF_FIT_VARIANCE; // others: knots
-    const auto bytes_over = [&] { // shares are known only now, and compress worse than none
-        const std::uint64_t bytes = fit.file_size(draft.tree), budget = options.goal.budget;
-        return budgeted && bytes > budget ? bytes - budget : 0;
-    };
-    for (std::uint64_t over = 0;; fit.goal.budget -= std::min(over, fit.goal.budget)) {
-        draft.description.shares.assign(bins.normals.size(), 0.0f);
-        compress::SeparateFit fitted = compress::fit_local_separate(
-            target, bins, options.bin_target, fit, budgeted ? whole_tree_bytes(options.goal.budget) : 0);
-        draft.tree = std::move(fitted.tree);
-        draft.description.shares = std::move(fitted.shares);
-        if (over = bytes_over(); over == 0) return finish(std::move(draft), target, source, options, bins);
-    }
+    draft.description.shares.assign(bins.normals.size(), 0.0f);
+    compress::SeparateFit fitted = compress::fit_local_separate(target, bins, options.bin_target, fit);
+    draft.tree = std::move(fitted.tree);
+    draft.description.shares = std::move(fitted.shares);
+    return finish(std::move(draft), target, source, options, bins);
 }
 
 } // namespace
@@ -282,7 +273,6 @@ std::string option_text(const std::string& reading, const LocalOptions& o) {
     text += "--no-sharing " + fit_text(o.fit.fit);
     if (o.bin_target == compress::BinTarget::centre) text += "--bin-target centre ";
     if (o.fit.order) text += "--order " + std::string(to_string(*o.fit.order)) + " ";
-    if (o.fit.fit == ACDF_FIT_VARIANCE) return text + goal_text(o.goal);
     text += "--knots " + std::to_string(o.fit.column_segments) + "x" + std::to_string(o.fit.row_segments);
     return o.fit.epsilon > 0.0 ? text + " --eps " + option_number(o.fit.epsilon) : text;
 }

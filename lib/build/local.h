@@ -45,7 +45,7 @@ struct LocalOptions {
     compress::LocalShape shape = compress::LocalShape::small; ///< with sharing
     ShapeFrom shape_from = ShapeFrom::options;
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
-    compress::FitOptions fit;                                   ///< of a bin's tree, without sharing
+    compress::FitOptions fit; ///< of a bin's tree, without sharing: cdf, pdf or uniform
     double cosine_share = 0.0;
     SceneVisibility visibility; ///< only with sharing and a budget
     std::string scene_text;     ///< what `scene` was read from and how, as options in one spelling

@@ -291,7 +291,7 @@ FRESH = [["env", "sky.pfm", *options.split()] for options in (
 FRESH += [["env", "sky.pfm", "later.pfm", *options.split()] for options in (
     "--axis time=6,18 --budget 6KiB", "--axis time=6,18 --no-sun --budget 6KiB --compress zlib --domain latlong")]
 FRESH += [["local", "sky.pfm", *options.split()] for options in (
-    "--budget 24KiB --shape small", "--budget 24KiB --shape small --cosine-share 0.25 --compress zlib", "--no-sharing --cells 24",
+    "--budget 24KiB --shape small", "--budget 24KiB --shape small --cosine-share 0.25 --compress zlib", "--no-sharing --normals 3 --knots 4x4",
     "--budget 24KiB --mis cosine", "--budget 24KiB",
     "--no-sharing --normals 5x3 --fit cdf --knots 6x6 --cosine-share 0.1",
     "--no-sharing --normals 5x3 --fit uniform --knots 6x6 --compress zlib")]

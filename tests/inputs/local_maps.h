@@ -78,8 +78,9 @@ inline std::vector<std::uint8_t> local_bytes(const acdf::compress::Target& targe
         return store(fit.tree, description, options.codec);
     }
     FitOptions each;
-    each.goal.kind = Goal::Kind::cells;
-    each.goal.cells = 128;
+    each.fit = ACDF_FIT_CDF;
+    each.order = Order::z;
+    each.column_segments = each.row_segments = 12;
     SeparateFit fit = fit_local_separate(target, bins, BinTarget::mean, each);
     description.shares = std::move(fit.shares);
     description.chunks = {local_chunk(cosine, {})};

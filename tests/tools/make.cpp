@@ -32,7 +32,8 @@ protected:
         const auto has = [&](const char* word) {
             return std::find(words.begin(), words.end(), word) != words.end();
         };
-        if (!has("--budget") && !has("--target-variance") && !has("--max-weight") && !has("--fit"))
+        if (!has("--budget") && !has("--target-variance") && !has("--max-weight") && !has("--fit") &&
+            !has("--no-sharing"))
             words.insert(words.end(), {"--budget", "32KiB"});
         words.insert(words.begin() + 1, {probe, "-o", output, "--force"});
         const Result result = run_acdf(words);

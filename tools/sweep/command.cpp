@@ -335,7 +335,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
         command.add_option("--files", options.sweep.files,
                            "Kinds of files to try, separated by commas. Probes: env, env-mis (--mis mean), "
                            "local, local-mis (--mis cosine), visibility (with --scene), "
-                           "local-separate, local-cdf, env-cdf, env-pdf, env-uniform; BRDFs: variance, "
+                           "local-cdf, env-cdf, env-pdf, env-uniform; BRDFs: variance, "
                            "cdf, uniform"))
         ->option_text("NAMES [env,env-mis,local,local-mis; BRDFs: all]")
         ->group("Sweep");

@@ -60,7 +60,7 @@ Candidate make_local(const Step& step, const builder::Target& target, const buil
     builder::LocalOptions options;
     options.source = source;
     options.mis = partner;
-    options.sharing = step.file != "local-separate" && step.file != "local-cdf";
+    options.sharing = step.file != "local-cdf";
     double bins = 1.0;
     if (step.file == "local-cdf") {
         options.columns = kPaperColumns, options.rows = kPaperRows;
@@ -97,7 +97,6 @@ const std::vector<FileKind>& file_kinds() {
         {"local", "local", "", Given::normal, false, medium},
         {"local-mis", "local", "--mis cosine", Given::normal, true, medium},
         {"visibility", "local", "--visibility", Given::position, false, large},
-        {"local-separate", "local", "--no-sharing", Given::normal, false, medium},
         {"local-cdf", "local", "--no-sharing --normals 25x10 --fit cdf", Given::normal, false, medium},
         {"env-cdf", "env", "--fit cdf", Given::nothing, false, small},
         {"env-pdf", "env", "--fit pdf", Given::nothing, false, small},

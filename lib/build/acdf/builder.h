@@ -262,17 +262,17 @@ struct Visibility {
 /// How a local environment is fitted and stored.
 struct LocalOptions {
     TargetOptions target;                ///< of pixels and rows; a Target has its own
-    Goal goal;                           ///< cells: of what bins share, or without sharing of a bin
+    Goal goal;                           ///< with sharing; cells: of what bins share
     std::uint32_t subdivisions = 0;      ///< octahedral bins, 4 n^2 + 2 of them, n up to 256; 0: as suits the size
     std::uint32_t columns = 0, rows = 0; ///< instead lat-long bins, up to 1024 each, without sharing
     std::uint32_t tiles = 0;             ///< up to ACDF_MAX_TILES; 0: as suits the size
     double max_weight = 0.0;             ///< with sharing: the largest measured weight, as FitOptions; 0: no bound
     std::vector<SceneNormal> normals;    ///< only what a scene has; empty: all normals
     double cosine_share = 0.0;           ///< of samples that are taken around the normal instead, in [0, 0.99]
-    bool sharing = true;                 ///< bins share tiles; else each has a tree of its own, larger and noisier
+    bool sharing = true;                 ///< bins share tiles; else each has a tree of its own, as in the paper
     LocalShape shape = LocalShape::automatic;
     BinTarget bin_target = BinTarget::mean; ///< without sharing
-    FitOptions fit;                         ///< of a bin's tree, without sharing
+    FitOptions fit;                         ///< of a bin's tree, without sharing: cdf, pdf or uniform
     Partner mis;                            ///< of bins that share tiles, without a cosine_share
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;

@@ -187,11 +187,10 @@ void check(const LocalOptions& options) {
     check(options.mis, ACDF_PARTNER_COSINE);
     require(options.mis.kind == ACDF_PARTNER_NONE || (options.sharing && options.cosine_share == 0.0),
             "an MIS partner is for bins that share tiles, without a cosine_share");
-    if (!options.sharing) check(options.fit);
-    if (!options.sharing && options.fit.fit != ACDF_FIT_VARIANCE) return;
-    check(options.goal, options.sharing ? 16 : 1);
-    require(options.sharing || options.goal.kind != Goal::Kind::variance,
-            "goal.variance is for bins that share tiles");
+    if (options.sharing) return check(options.goal, 16);
+    check(options.fit);
+    require(options.fit.fit != ACDF_FIT_VARIANCE, "without sharing fit.fit is ACDF_FIT_CDF, _PDF or _UNIFORM");
+    require(options.goal.kind == Goal::Kind::automatic, "a goal is for bins that share tiles");
 }
 
 void check(const BrdfOptions& options) {

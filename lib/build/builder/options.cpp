@@ -176,8 +176,8 @@ build::LocalOptions internal(const LocalOptions& options) {
     out.bin_target =
         options.bin_target == BinTarget::centre ? compress::BinTarget::centre : compress::BinTarget::mean;
     out.fit = internal(options.fit);
-    // Bins have a size that all orders share: the paper's, but for trees, which need none.
-    if (!out.sharing && out.fit.fit != ACDF_FIT_VARIANCE && !out.fit.order) out.fit.order = compress::Order::z;
+    // Bins have a size that all orders share: the paper's.
+    if (!out.sharing && !out.fit.order) out.fit.order = compress::Order::z;
     out.cosine_share = options.cosine_share;
     out.scene_text = options.normals_text;
     out.visibility = internal(options.visibility);

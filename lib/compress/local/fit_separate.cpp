@@ -1,7 +1,5 @@
 #include "compress/local/fit_separate.h"
 
-#include "compress/fit/partition.h"
-#include "compress/fit/prune.h"
 #include "compress/local/light.h"
 #include "compress/local/whole.h"
 #include "compress/parallel.h"
@@ -11,13 +9,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 
 namespace acdf::compress {
 namespace {
 
-constexpr std::uint32_t kSide = 4; // samples of a bin's normals along a side
+constexpr std::uint32_t kSide = 4;  // samples of a bin's normals along a side
+constexpr double kBytePrice = 1e-8; // of the sum of costs: knots are kept
 
 /// Normals spread evenly over a bin, and how far any normal of the bin may be from the nearest of them (a sine).
 struct BinNormals {
@@ -150,8 +148,9 @@ public:
     }
     /// Encodes all behind the curves of the environment; `stored` says which bins have one, in the order in which
     /// they were appended.
-    EncodedTree encode(const std::vector<bool>& stored, double price, const EncodedTree& environment) const {
-        EncodedTree tree = encode_tree(cascade_, price, std::numeric_limits<double>::infinity(), environment.bytes);
+    EncodedTree encode(const std::vector<bool>& stored, const EncodedTree& environment) const {
+        EncodedTree tree =
+            encode_tree(cascade_, kBytePrice, std::numeric_limits<double>::infinity(), environment.bytes);
         std::vector<std::uint32_t> roots(stored.size(), ACDF_NO_ROOT);
         std::size_t next = 0;
         for (std::size_t b = 0; b < stored.size(); ++b)
@@ -170,102 +169,23 @@ std::uint64_t file_size(const FitOptions& options, const EncodedTree& tree) {
 
 /// Trees of bins, and that of the environment at a quarter of the file.
 EncodedTree with_environment(const Target& target, const Trees& trees, const std::vector<bool>& stored,
-                             double price, const FitOptions& options) {
-    const std::uint64_t others = file_size(options, trees.encode(stored, price, {}));
-    return trees.encode(stored, price, fit_whole(target, others / 3).tree);
+                             const FitOptions& options) {
+    const std::uint64_t others = file_size(options, trees.encode(stored, {}));
+    return trees.encode(stored, fit_whole(target, others / 3).tree);
 }
 
-/// Partitions of all bins, each grown on its own and then forgotten but for its parts: memory does not hold the
-/// targets of all bins at once.
-class Partitions {
-public:
-    Partitions(const Target& target, const std::vector<LightPoint>& light, const NormalBins& bins, BinTarget kind,
-               std::size_t cells, std::vector<float>& shares, const Progress& progress)
-        : partitions_(bins.normals.size()), shares_(shares), total_(integral(target)) {
-        std::size_t done = 0;
-        for (std::size_t b = 0; b < bins.normals.size(); ++b) {
-            if (bins.weight[b] > 0.0) grow(target_of(target, light, bins, b, kind), b, cells);
-            if (progress) progress(0.8 * double(++done) / double(bins.normals.size()));
-        }
-    }
+} // namespace
 
-    bool stored(std::size_t bin) const { return partitions_[bin].has_value(); }
-    /// The least price for which all partitions were grown far enough.
-    double cheapest() const { return cheapest_; }
-    Flattened at(std::size_t bin, double price) const {
-        Flattened flat;
-        const Partition& partition = *partitions_[bin];
-        if (partition.total() > 0.0) flatten(partition, prune(partition.parts(), price, kNoBound), flat);
-        else flatten_nothing(ACDF_AXIS_PHI, flat);
-        return flat;
-    }
-    std::size_t cells(double price) const {
-        std::size_t sum = 0;
-        for (std::size_t b = 0; b < partitions_.size(); ++b)
-            if (stored(b)) sum += prune(partitions_[b]->parts(), price, kNoBound).cells[0];
-        return sum;
-    }
-
-private:
-    static constexpr double kNoBound = std::numeric_limits<double>::infinity();
-
-    void grow(const OneBin& bin, std::size_t index, std::size_t cells) {
-        shares_[index] = bin.share(total_);
-        if (!(bin.target.total > 0.0)) {
-            Grid dark = grid_of(bin.target);
-            partitions_[index].emplace(dark, 1.0);
-            return;
-        }
-        Partition& partition = partitions_[index].emplace(grid_of(bin.target), bin.target.total);
-        double price = 1e-3;
-        for (; price > 1e-12; price *= 0.25) {
-            partition.refine(price * kLeastBytes, kNoBound);
-            if (prune(partition.parts(), price, kNoBound).cells[0] > cells) break;
-        }
-        cheapest_ = std::min(cheapest_, price); // bins that gain little by now keep their last divisions
-    }
-
-    std::vector<std::optional<Partition>> partitions_;
-    std::vector<float>& shares_;
-    double total_, cheapest_ = 1.0;
-};
-
-SeparateFit fit_at_one_price(const Target& target, const std::vector<LightPoint>& light, const NormalBins& bins,
-                             BinTarget kind, const FitOptions& options, std::uint64_t whole_bytes) {
-    SeparateFit out;
-    out.shares.assign(bins.normals.size(), 0.0f);
-    const bool budget = options.goal.kind == Goal::Kind::budget;
-    const std::size_t mean = budget ? options.goal.budget / 4 / bins.stored() : options.goal.cells;
-    const Partitions partitions(target, light, bins, kind, 2 * mean + 16, out.shares, options.progress);
-    std::vector<bool> stored(bins.normals.size());
-    for (std::size_t b = 0; b < stored.size(); ++b) stored[b] = partitions.stored(b);
-    const EncodedTree environment = whole_bytes > 0 ? fit_whole(target, whole_bytes).tree : EncodedTree();
-    const auto trees_at = [&](double price) {
-        Trees trees;
-        for (std::size_t b = 0; b < stored.size(); ++b)
-            if (stored[b]) trees.append(partitions.at(b, price).cascade);
-        return trees;
-    };
-    const auto byte_price = [&](double price) { return 2.0 * price / double(bins.stored()); };
-    const auto beyond = [&](double price) {
-        if (!budget) return partitions.cells(price) > std::size_t{options.goal.cells} * bins.stored();
-        return file_size(options, trees_at(price).encode(stored, byte_price(price), environment)) >
-               options.goal.budget;
-    };
-    double low = partitions.cheapest(), high = 1.0;
-    if (beyond(high)) throw std::runtime_error("so small a size is out of reach");
-    for (int step = 0; step < 24; ++step) {
-        const double middle = std::sqrt(low * high);
-        (beyond(middle) ? low : high) = middle;
-    }
-    const Trees trees = trees_at(high);
-    out.tree = whole_bytes > 0 ? trees.encode(stored, byte_price(high), environment)
-                               : with_environment(target, trees, stored, byte_price(high), options);
-    return out;
+Target bin_target(const Target& target, const NormalBins& bins, std::size_t bin, BinTarget kind) {
+    return target_of(target, light_points(target), bins, bin, kind).target;
 }
 
-SeparateFit fit_each(const Target& target, const std::vector<LightPoint>& light, const NormalBins& bins,
-                     BinTarget kind, const FitOptions& options) {
+SeparateFit fit_local_separate(const Target& target, const NormalBins& bins, BinTarget kind,
+                               const FitOptions& options) {
+    if (!has_energy(target)) throw std::invalid_argument("a target without energy");
+    if (options.fit == ACDF_FIT_VARIANCE)
+        throw std::invalid_argument("bins with trees of their own have no variance fit");
+    const std::vector<LightPoint> light = light_points(target);
     SeparateFit out;
     out.shares.assign(bins.normals.size(), 0.0f);
     FitOptions own = options;
@@ -287,22 +207,8 @@ SeparateFit fit_each(const Target& target, const std::vector<LightPoint>& light,
         }
         if (options.progress) options.progress(double(b + 1) / double(stored.size()));
     }
-    out.tree = with_environment(target, trees, stored, 1e-8, options);
+    out.tree = with_environment(target, trees, stored, options);
     return out;
-}
-
-} // namespace
-
-Target bin_target(const Target& target, const NormalBins& bins, std::size_t bin, BinTarget kind) {
-    return target_of(target, light_points(target), bins, bin, kind).target;
-}
-
-SeparateFit fit_local_separate(const Target& target, const NormalBins& bins, BinTarget kind,
-                               const FitOptions& options, std::uint64_t whole_bytes) {
-    if (!has_energy(target)) throw std::invalid_argument("a target without energy");
-    const std::vector<LightPoint> light = light_points(target);
-    return options.fit == ACDF_FIT_VARIANCE ? fit_at_one_price(target, light, bins, kind, options, whole_bytes)
-                                            : fit_each(target, light, bins, kind, options);
 }
 
 } // namespace acdf::compress

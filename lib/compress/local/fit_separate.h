@@ -20,15 +20,12 @@ struct SeparateFit {
     std::vector<float> shares; ///< one a bin: the mean irradiance over the integral of the probe
 };
 
-/// `options` are those of one bin's tree; with the variance fit as a tree, Goal::cells is the mean over the bins,
-/// and those and a budget (of the bytes of all trees, or as options.file_size has it) are shared by one price a
-/// byte over all bins. Deterministic for any number of threads. Throws std::invalid_argument where the target has
-/// no energy, and std::runtime_error where the goal is out of reach.
+/// `options` are those of one bin's tree, of the fits cdf, pdf and uniform. Deterministic for any number of
+/// threads. Throws std::invalid_argument where the target has no energy.
 ///
-/// The environment's own tree is that of the variance fit, whatever those of bins are: of at most `whole_bytes`,
-/// or, if that is 0, of a quarter of the file.
+/// The environment's own tree is that of the variance fit, of a quarter of the file.
 SeparateFit fit_local_separate(const Target& target, const NormalBins& bins, BinTarget kind,
-                               const FitOptions& options, std::uint64_t whole_bytes = 0);
+                               const FitOptions& options);
 
 /// The target of one bin: g times the root of the mean of (max(0, n . omega) / E_n)^2. Exposed for tests.
 Target bin_target(const Target& target, const NormalBins& bins, std::size_t bin, BinTarget kind);

@@ -238,7 +238,7 @@ def build_local(
     normals, normal_weights: only what a scene has, of shape (n, 3), and how often each occurs; None: all normals.
     max_weight: of the samples of all normals that accuracy is measured for.
     cosine_share: of samples that are taken around the normal instead, in [0, 0.99].
-    sharing: bins share tiles; else each has a tree of its own.
+    sharing: bins share tiles; else each has a tree of its own, of the fits "cdf", "pdf" or "uniform".
     mis: "none" or "cosine".
     shape: "halvings", one tree with a row of codes for each bin: the least noise for its bytes; "small", curves in tiles, for
         max_weight and MIS partners other than the cosine; "auto" makes halvings, or small where options ask for what that has not.

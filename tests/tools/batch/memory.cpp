@@ -113,7 +113,7 @@ TEST_F(BatchMemory, JobsTakeAboutWhatIsEstimated) {
           "--budget 64KiB --domain octahedral", "--budget 128KiB --compress zlib --shape small",
           "--budget 64KiB --mis cosine", "--budget 64KiB --mis cosine --heuristic power --domain octahedral",
           "--budget 128KiB --shape small --channel rgb", "--budget 64KiB --normals 3 --max-weight 40",
-          "--no-sharing --normals 2 --budget 128KiB", "--no-sharing --fit cdf --normals 2"})
+          "--no-sharing --fit cdf --normals 2"})
         jobs.push_back({"local", noise, options});
     const std::string mesh = folder / "floor.obj";
     write_text(mesh, "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 1\nv 1 0 1\nf 1 2 3 4\nf 5 6 3\n");

@@ -122,7 +122,8 @@ TEST(BuilderLocal, Misuse) {
     refused("a share", [](LocalOptions& o) { o.cosine_share = 1.0; });
     refused("a NaN share", [](LocalOptions& o) { o.cosine_share = kNan; });
     refused("a variance without sharing",
-            [](LocalOptions& o) { o.goal = Goal::of_variance(0.1), o.sharing = false; });
+            [](LocalOptions& o) { o.goal = Goal::of_variance(0.1), o.sharing = false, o.fit.fit = ACDF_FIT_CDF; });
+    refused("the variance fit without sharing", [](LocalOptions& o) { o.sharing = false; });
 }
 
 Bytes brdf_bytes(const Brdf& given, const BrdfOptions& options) {
