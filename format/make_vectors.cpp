@@ -191,14 +191,14 @@ std::string indexed_rows(const acdf::IndexedEnvironment& view) {
 
 // ---- tables ---------------------------------------------------------------------------------------------
 
-/// Two by two bins, one of them without energy, over three axes; a falling range, tilts, and a child on its
-/// parent's axis.
+/// Two by two bins over three axes: one without energy, one of one cell; a falling range, a dark half.
 std::vector<std::uint8_t> table_file() {
-    const Cascade cascade = {{{2, {3}, {0.375, 0.625}, {1, 2}, {}},
-                              {3, {2, 5}, {0.25, 0.0, 0.75}, {}, {-0.5, 0.0, 0.9375}},
-                              {4, {1, 2, 7}, {0.125, 0.25, 0.5, 0.125}, {-1, -1, 3, -1}, {}},
-                              {4, {4}, {0.875, 0.125}, {}, {0.25, -1.0}}},
-                             {0, 2, 0, 1}};
+    Halvings trees;
+    trees.code_bits = 6;
+    trees.axis_bits = 2;
+    trees.axes = {0, 1, 2, -1, -1, 1, -1, -1, 2, 2, -1, -1, -1, -1, 2, 2, 2, 2, -1, -1, -1, -1, -1};
+    trees.codes = {20, 41, 1, 63, 30, 55, 62, 10, 33, 5};
+    const std::vector<std::uint32_t> roots = {0, ACDF_NO_ROOT, 6, ACDF_NO_ROOT};
     Description d;
     d.kind = ACDF_KIND_TABLE;
     d.parameterization = ACDF_PARAM_TABLE;
@@ -211,7 +211,7 @@ std::vector<std::uint8_t> table_file() {
               {"depth", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, 8, 0.1, -0.7},
               {"nm", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, 31, 380.0, 730.0}};
     d.shares = {0.5f, 0.25f, 0.25f, 0.0f};
-    return store(encode_tree(cascade), d);
+    return store(trees, roots, d);
 }
 
 std::string joined(const std::vector<double>& values) {

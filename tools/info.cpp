@@ -66,6 +66,12 @@ TreeCounts count_tree(const File& file) {
         counts.cells = halving_count(file) + 1;
         return counts;
     }
+    if (file.kind() == ACDF_KIND_TABLE) {
+        for (std::uint32_t bin = 0; bin < file.description().bin_count; ++bin)
+            if (file.bin(bin).share > 0.0f)
+                build::for_each_table_cell(file, bin, [&](const build::TableCell&) { ++counts.cells; });
+        return counts;
+    }
     if (!file.has_bins()) {
         counts.cells = file.environment().data().halved->count + 1;
         return counts;

@@ -9,10 +9,10 @@ MAGIC = bytes.fromhex("AB4143444620 20BB0D0A1A0A".replace(" ", ""))
 ENVIRONMENT, LOCAL, BRDF, TABLE, INDEXED = 1, 2, 3, 4, 5
 INFLATED_LIMIT = 1 << 30
 # Of each known chunk: its flags, and the kinds in whose files it may be.
-KNOWN = {b"DESC": (1, (1, 2, 3, 4, 5)), b"BINS": (1, (1, 2, 3, 4, 5)), b"TREE": (1, (1, 2, 3, 4, 5)),
+KNOWN = {b"DESC": (1, (1, 2, 3, 4, 5)), b"BINS": (1, (1, 2, 3, 4, 5)), b"TREE": (1, (1, 2, 3, 5)),
          b"META": (0, (1, 2, 3, 4, 5)), b"TILE": (1, (2,)), b"ROWS": (1, (2,)), b"VIEW": (1, (3,)),
          b"LOCL": (1, (2,)), b"COMP": (1, (1, 2, 4)), b"PLAC": (0, (2,)), b"PORT": (0, (2,)),
-         b"HALV": (1, (1, 2, 3, 5)), b"MAPS": (1, (5,)), b"NORM": (1, (2, 3))}
+         b"HALV": (1, (1, 2, 3, 4, 5)), b"MAPS": (1, (5,)), b"NORM": (1, (2, 3))}
 
 __all__ = ["Refused", "Container", "read_container"]
 
@@ -95,6 +95,7 @@ def check_records(data, kind, records):
                        BRDF: (b"DESC", b"BINS", b"NORM")}
     curves = (b"DESC", b"BINS", b"TREE")
     for wanted in ((b"DESC", b"HALV", b"MAPS") if kind == INDEXED else
+                   (b"DESC", b"HALV", b"BINS") if kind == TABLE else
                    beside_halvings.get(kind, curves) if b"HALV" in seen else curves):
         require(wanted in seen, 3004, wanted)
     require(len(data) == round_up(end), 3008)

@@ -60,7 +60,7 @@ def read_description(container):
 
 
 def read_bins(payloads, count):
-    """§7.1. Of files with HALV, local environments alone have them."""
+    """§7.1. Files of halvings of kinds 1 and 5 have none."""
     if b"BINS" not in payloads:
         return None
     require(len(payloads[b"BINS"]) == 8 * count, 4004)

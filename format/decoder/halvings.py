@@ -21,6 +21,9 @@ class Bits:
             self.at += 1
         return value
 
+    def is_at_end(self):
+        return self.at == 8 * len(self.data)
+
     def is_used_up(self):
         return not any(self.take(1) for _ in range(8 * len(self.data) - self.at))
 
@@ -74,52 +77,62 @@ class Node:
         return any(low == high for low, high in self.steps)
 
     def probability(self):
-        (r0, s0), (r1, s1) = self.steps
-        return (s0 - r0) / STEPS * ((s1 - r1) / STEPS)
-
-
-class Halvings:
-    """Chunk HALV. What Tree is to curves: `sample` and `find` change `u`, `box` and, of `find`, `strata`, by axis, to those
-    of the cell. The other arguments are those of Tree."""
-
-    def __init__(self, data, resolutions):
-        require(len(data) >= 16, 6030)
-        self.count, self.code_bits, *reserved = struct.unpack_from("<4I", data)
-        require(self.count <= MOST_HALVINGS and 2 <= self.code_bits <= 12 and not any(reserved), 6030)
-        codes_at = 16 + 4 * words(3 * self.count + 1)
-        require(len(data) == codes_at + 4 * words(self.code_bits * self.count), 6030)
-        self.root = Node([[0, n] for n in resolutions], [[0, STEPS] for _ in resolutions])
-        structure, codes = Bits(data[16:codes_at]), Bits(data[codes_at:])
-        self.read(structure, codes)
-        require(structure.is_used_up() and codes.is_used_up(), 6034)
-
-    def read(self, structure, codes):
-        """The nodes in preorder."""
-        halved, waiting = 0, [self.root]
-        while waiting:
-            node = waiting.pop()
-            if structure.take(1) == 0:
-                continue
-            halved += 1
-            require(halved <= self.count, 6031)
-            axis, code = structure.take(1), codes.take(self.code_bits)
-            low, high = node.box[axis]
-            require(high - low >= 2, 6032)
-            require(not node.is_dark(), 6033)
-            node.halve(axis, threshold(*node.steps[axis], code, self.code_bits))
-            waiting += reversed(node.halves)
-        require(halved == self.count, 6031)
+        p = 1.0
+        for low, high in self.steps:
+            p = p * ((high - low) / STEPS)
+        return p
 
     def leaf(self, is_upper):
-        node = self.root
+        """Below this node."""
+        node = self
         while node.halves:
             node = node.halves[is_upper(node)]
         return node
 
+
+def read_trees(data, roots):
+    """Chunk HALV, of a tree below each root. Returns how many nodes of each are halved."""
+    require(len(data) >= 16, 6030)
+    count, code_bits, *reserved = struct.unpack_from("<4I", data)
+    require(count <= MOST_HALVINGS and 2 <= code_bits <= 12 and not any(reserved), 6030)
+    axis_bits = (len(roots[0].box) - 1).bit_length() if roots else 0
+    codes_at = 16 + 4 * words((2 + axis_bits) * count + len(roots))
+    require(len(data) == codes_at + 4 * words(code_bits * count), 6030)
+    structure, codes = Bits(data[16:codes_at]), Bits(data[codes_at:])
+    counts = []
+    for root in roots:
+        counts.append(0)
+        waiting = [root]
+        while waiting:
+            node = waiting.pop()
+            if structure.is_at_end() or structure.take(1) == 0:
+                continue
+            counts[-1] += 1
+            require(sum(counts) <= count, 6031)
+            axis, code = structure.take(axis_bits), codes.take(code_bits)
+            require(axis < len(node.box), 6032)
+            low, high = node.box[axis]
+            require(high - low >= 2, 6032)
+            require(not node.is_dark(), 6033)
+            node.halve(axis, threshold(*node.steps[axis], code, code_bits))
+            waiting += reversed(node.halves)
+    require(sum(counts) == count, 6031)
+    require(structure.is_used_up() and codes.is_used_up(), 6034)
+    return counts
+
+
+class Halvings:
+    """Chunk HALV of one tree. What Tree is to curves: `draw` and `find` change `u`, `box` and, of `find`, `strata`, by
+    axis, to those of the cell. The other arguments are those of Tree."""
+
+    def __init__(self, data, resolutions):
+        self.root = Node([[0, n] for n in resolutions], [[0, STEPS] for _ in resolutions])
+        self.count, = read_trees(data, [self.root])
+
     def draw(self, _root, u, box, _s):
         """§6.3. Returns p."""
         step = [min(math.floor(v * STEPS), STEPS - 1) for v in u]
-        leaf = self.leaf(lambda node: step[node.axis] >= node.halves[1].steps[node.axis][0])
+        leaf = self.root.leaf(lambda node: step[node.axis] >= node.halves[1].steps[node.axis][0])
         for a, (low, high) in enumerate(leaf.steps):
             u[a] = (u[a] * STEPS - low) / (high - low)
         box[:] = leaf.box
@@ -127,7 +140,7 @@ class Halvings:
 
     def find(self, _root, square, box, _s, strata=None):
         """§6.4. Returns p, 0 where no sample can fall."""
-        leaf = self.leaf(lambda node: square[node.axis] >= node.halves[1].box[node.axis][0])
+        leaf = self.root.leaf(lambda node: square[node.axis] >= node.halves[1].box[node.axis][0])
         box[:] = leaf.box
         if strata is not None:
             strata[:] = [[low / STEPS, (high - low) / STEPS] for low, high in leaf.steps]

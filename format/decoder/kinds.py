@@ -1,7 +1,7 @@
 """SPEC.md §2.1: from the chunks of a file to the view of its kind."""
 from .brdf import Brdf
 from .partner import Partner
-from .container import BRDF, ENVIRONMENT, INDEXED, LOCAL
+from .container import BRDF, ENVIRONMENT, INDEXED, LOCAL, TABLE
 from .description import NOT_STORED
 from .halvings import Halvings
 from .indexed import Indexed, check_indexed_axes
@@ -26,7 +26,9 @@ def sampler_of(container, d):
     chunks, kind = container.payloads, container.kind
     if b"HALV" in chunks:
         require(b"TREE" not in chunks and b"TILE" not in chunks and d.fit == 4, 6035)
-        require(b"BINS" not in chunks or kind in (LOCAL, BRDF), 6035)
+        require(b"BINS" not in chunks or kind in (LOCAL, BRDF, TABLE), 6035)
+        if kind == TABLE:
+            return Table(chunks[b"HALV"], d.axes, d.bins)
         if kind == INDEXED:
             check_indexed_axes(d)
             return Indexed(chunks[b"HALV"], chunks[b"MAPS"], d)
@@ -50,9 +52,7 @@ def sampler_of(container, d):
     if kind == LOCAL:
         return Local(tree, d, tiles, chunks.get(b"LOCL"), chunks.get(b"PLAC"),
                      chunks.get(b"PORT"))
-    if kind == BRDF:
-        return Brdf(tree, d, None, chunks.get(b"VIEW"))
-    return Table(tree, d.axes, d.bins)
+    return Brdf(tree, d, None, chunks.get(b"VIEW"))
 
 
 def roots_of(kind, d, tiles, tree):

@@ -3,8 +3,8 @@
 #include "build/errors.h"
 #include "build/table_partner.h"
 #include "build/text/partner.h"
-#include "compress/fit/tree.h"
 #include "compress/sum.h"
+#include "compress/tables/fit.h"
 
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -117,11 +117,11 @@ std::vector<float> shares(const std::vector<double>& integrals) {
 
 std::string option_text(const TableOptions& options) {
     std::string text = options.indexed > 0 ? "--indexed " + std::to_string(options.indexed) + " " : "";
-    const compress::Goal& goal = options.fit.goal;
+    const compress::Goal& goal = options.goal;
     if (goal.kind == compress::Goal::Kind::budget) text += "--budget " + std::to_string(goal.budget);
     else if (goal.kind == compress::Goal::Kind::variance) text += "--target-variance " + number(goal.variance);
     else text += "--cells " + std::to_string(options.cells);
-    if (options.fit.max_weight > 0.0) text += " --max-weight " + number(options.fit.max_weight);
+    if (options.max_weight > 0.0) text += " --max-weight " + number(options.max_weight);
     if (options.mis) text += " " + partner_text(options.mis);
     if (text.back() == ' ') text.pop_back();
     return text;
@@ -165,6 +165,27 @@ compress::Chunk partner_of(const compress::Partner& partner, const std::vector<f
     return compress::partner_chunk(partner, static_cast<float>(sum / double(shares.size())), records);
 }
 
+compress::TableFitOptions goal_of(const TableOptions& options, const compress::Description& description,
+                                  std::size_t numbers, const Progress& progress) {
+    compress::TableFitOptions out;
+    out.goal = options.goal;
+    out.goal.cells = static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(std::uint64_t{options.cells} * description.shares.size(), 0xFFFFFFFFu));
+    out.max_weight = options.max_weight;
+    out.most_bytes = std::max<std::uint64_t>(kVarianceBytes, numbers);
+    out.progress = [progress](double share) {
+        if (progress) progress(0.9 * share, "fitting");
+    };
+    if (out.goal.kind != compress::Goal::Kind::budget) return out;
+    const compress::TableTrees least = compress::whole_cells(description.shares);
+    const std::uint64_t bytes = compress::store(least.halvings, least.roots, description).size();
+    if (bytes > out.goal.budget)
+        throw std::runtime_error("a size of " + std::to_string(out.goal.budget) +
+                                 " bytes is out of reach; the smallest possible is " + std::to_string(bytes));
+    out.chunk_bytes = compress::halvings_room(description, out.goal.budget);
+    return out;
+}
+
 /// The bins of the partner. Throws OptionError.
 std::vector<compress::Grid> other_grids(const Array& array, const TableOptions& options) {
     if (!options.mis) return {};
@@ -189,8 +210,7 @@ std::vector<compress::Grid> table_grids(const Array& array, std::uint32_t indexe
 }
 
 Table build_table(const Array& array, const std::string& source_name, const std::string& source_sha256,
-                  const TableOptions& given, const Progress& progress) {
-    TableOptions options = given;
+                  const TableOptions& options, const Progress& progress) {
     check_options(array.shape, options);
     compress::Description description;
     description.kind = ACDF_KIND_TABLE;
@@ -208,27 +228,18 @@ Table build_table(const Array& array, const std::string& source_name, const std:
     std::fill(description.channel_weights, description.channel_weights + 3, 0.0);
     description.channel_weights[0] = 1.0; // a table has one channel
 
-    options.fit.goal.cells = static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(std::uint64_t{options.cells} * bins.size(), 0xFFFFFFFFu));
     description.metadata = metadata(source_name, source_sha256, options, {});
-    options.fit.file_size = [&](const compress::EncodedTree& tree) {
-        return std::uint64_t{compress::store(tree, description, options.codec).size()};
-    };
-    options.fit.most_bytes = std::max<std::uint64_t>(kVarianceBytes, array.values.size());
-    options.fit.size_by_length = options.codec == ACDF_CODEC_NONE;
-    options.fit.progress = [&](double share) {
-        if (progress) progress(0.9 * share, "fitting");
-    };
     if (options.mis) description.chunks = {partner_of(options.mis, std::vector<float>(bins.size(), 0.5f))};
     const TablePartner beside(bins, others, options.mis);
-    const compress::EncodedTree tree = compress::fit_trees(beside.bins(), options.fit).tree;
-    const std::vector<std::uint8_t> bytes = compress::store(tree, description);
+    const compress::TableTrees trees =
+        compress::fit_table(beside.bins(), goal_of(options, description, array.values.size(), progress));
+    const std::vector<std::uint8_t> bytes = compress::store(trees.halvings, trees.roots, description);
     const File file = open_made(bytes);
     out.accuracy = summary(options.mis ? measure_bins_beside(file, bins, others) : measure_bins(file, bins));
     out.accuracy.combined = static_cast<bool>(options.mis);
     if (options.mis) description.chunks = {partner_of(options.mis, recommended_light_shares(file, bins, others))};
     description.metadata = metadata(source_name, source_sha256, options, out.accuracy);
-    out.bytes = compress::store(tree, description, options.codec);
+    out.bytes = compress::store(trees.halvings, trees.roots, description, options.codec);
     if (progress) progress(1.0, "measuring");
     return out;
 }

@@ -22,7 +22,8 @@ struct TableOptions {
     std::vector<std::string> names;                ///< one an axis; empty: x0, x1, ...
     std::vector<std::pair<double, double>> ranges; ///< one an axis: coordinates of its ends; empty: 0 to its length
     std::uint32_t cells = 4096;                    ///< a bin, on average, where those are the goal
-    compress::FitOptions fit;                      ///< goal (cells: see above), max_weight, progress
+    compress::Goal goal;                           ///< cells: see above
+    double max_weight = 0.0;                       ///< the largest f/p over its mean, in any bin; 0: no bound
     compress::Partner mis;                         ///< ACDF_PARTNER_TABLE or none
     const Array* other = nullptr;                  ///< that table; it must outlive the build
     std::string other_name, other_sha256;          ///< where it comes from

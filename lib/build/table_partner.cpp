@@ -52,8 +52,8 @@ double solve_threshold(const std::vector<double>& f, const std::vector<double>& 
 /// Writes p to all boxes of a cell.
 void fill(const Grid& grid, const TableCell& cell, std::size_t axis, std::size_t offset, double p,
           std::vector<double>& out) {
-    const AcdfRange& range = cell.range[grid.axes[axis]];
-    for (std::uint32_t i = range.low; i < range.high; ++i) {
+    const AcdfSpan& span = cell.box[axis];
+    for (std::uint32_t i = span.end[0]; i < span.end[1]; ++i) {
         const std::size_t at = offset * grid.shape[axis] + i;
         if (axis + 1 == grid.dimensions()) out[at] = p;
         else fill(grid, cell, axis + 1, at, p, out);
@@ -69,13 +69,10 @@ struct BinPdfs {
         : f(pdf_of(grid)), p(f.size(), 0.0), b(pdf_of(other)) {
         if (b.empty()) b.assign(f.size(), 0.0);
         if (f.empty() || !(file.bin(bin).share > 0.0f)) return;
-        for_each_table_cell(file, file.bin(bin).root, [&](const TableCell& cell) {
+        for_each_table_cell(file, bin, [&](const TableCell& cell) {
             double volume = 1.0;
-            for (std::size_t axis = 0; axis < grid.dimensions(); ++axis) {
-                const AcdfRange& range = cell.range[grid.axes[axis]];
-                if (range.tilt != 0.0) throw std::invalid_argument("tables with tilted cells are not measured");
-                volume *= double(range.high - range.low) / grid.shape[axis];
-            }
+            for (std::size_t axis = 0; axis < grid.dimensions(); ++axis)
+                volume *= double(cell.box[axis].end[1] - cell.box[axis].end[0]) / grid.shape[axis];
             fill(grid, cell, 0, 0, cell.probability / volume, p);
             ++cells;
         });

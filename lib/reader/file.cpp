@@ -8,7 +8,6 @@
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include "tables/indexed.h"
 #include "tables/normals.h"
-#include "tables/tree_survey.h"
 #endif
 
 #include <acdf/environment_view.h>
@@ -163,10 +162,6 @@ void take_parts(const Parts& parts, AcdfFile& file) noexcept {
 // Checks the bytes of a file, and makes its view. On failure the caller gives its memory back.
 bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
     Parts parts;
-#ifndef ACDF_ENVIRONMENT_ONLY
-    TreeSurvey survey;
-    if (options.tables) parts.survey = &survey;
-#endif
     check(file.bytes, file.size, options.limits, first_error, &status, parts, options.allocator);
     file.memory[1] = parts.inflated;
     if (!status.ok()) return false;
@@ -178,13 +173,19 @@ bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
         file.table_bytes = 4 * u64{file.indexed.top->words};
         return true;
     }
+    if (file.kind() == ACDF_KIND_TABLE) {
+        make_view(parts, options.tables, file);
+        if (!file.memory[2].data) file.memory[2] = std::exchange(parts.halvings_block, {}); // the nodes alone
+        file.table_bytes = file.memory[2].bytes;
+        return true;
+    }
 #endif
     if (parts.halvings && !make_halved(parts, options.tables, file))
         return fail(status, 1003, "%llu halvings", ull{parts.halving_count});
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (parts.normals && !make_rows(parts, options.tables, file))
         return fail(status, 1003, "%llu rows", ull{parts.normals->row_count});
-    if (file.kind() != ACDF_KIND_ENVIRONMENT) make_view(parts, options.tables ? &survey : nullptr, file);
+    if (file.kind() != ACDF_KIND_ENVIRONMENT) make_view(parts, options.tables, file);
 #endif
     return true;
 }

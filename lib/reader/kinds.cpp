@@ -3,7 +3,7 @@
 #include "opened_file.h"
 #include "tables/indexed.h"
 #include "tables/local.h"
-#include "tables/table_entries.h"
+#include "tables/table_lookup.h"
 
 #include <acdf/views.h>
 
@@ -68,25 +68,24 @@ void make_brdf(const Parts& parts, AcdfFile& file) {
                  parts.description->total};
 }
 
-void make_table(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) {
+void make_table(const Parts& parts, bool tables, AcdfFile& file) {
     const u32 axes = parts.description->axis_count;
     u32 indexed = 0;
     while (parts.axes[indexed].role == ACDF_AXIS_INDEXED) ++indexed; // rule 5012: one axis at least is sampled
-    file.table = {parts.tree,    parts.bins,       parts.axes, axes, indexed, parts.description->total,
-                  parts.partner, parts.tree_units, nullptr};
-    if (survey)
-        file.table.entries = keep(make_table_entries(file.table, parts.description->bin_count, *survey,
-                                                     most_table_bytes(file), file.allocator, file.memory[2]),
-                                  file);
+    file.table = {parts.halvings,           parts.bins,    parts.axes, axes, indexed,
+                  parts.description->total, parts.partner, nullptr};
+    if (tables)
+        make_table_lookup(file.table, parts.description->bin_count, parts.halving_count, most_table_bytes(file),
+                          file.allocator, file.memory[2]);
 }
 
 } // namespace
 
-void make_view(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) noexcept {
+void make_view(const Parts& parts, bool tables, AcdfFile& file) noexcept {
     file.blend = {parts.tiles, parts.splits, parts.tile_roots, parts.rows, parts.tree};
-    if (file.kind() == ACDF_KIND_LOCAL) make_local(parts, survey != nullptr, file);
+    if (file.kind() == ACDF_KIND_LOCAL) make_local(parts, tables, file);
     if (file.kind() == ACDF_KIND_BRDF) make_brdf(parts, file);
-    if (file.kind() == ACDF_KIND_TABLE) make_table(parts, survey, file);
+    if (file.kind() == ACDF_KIND_TABLE) make_table(parts, tables, file);
 }
 
 LocalEnvironmentView File::local() const noexcept { return LocalEnvironmentView(opened_->local); }

@@ -36,7 +36,6 @@ struct AcdfFile {
 namespace acdf {
 
 struct Parts;
-class TreeSurvey;
 
 /// File::open and File::from_memory; null on failure. `status` is that of success before.
 AcdfFile* open_path(const char* path, const LoadOptions& options, Status& status) noexcept;
@@ -44,9 +43,9 @@ AcdfFile* open_bytes(const void* data, std::size_t size, const LoadOptions& opti
 void close_file(AcdfFile* file) noexcept;
 
 #ifndef ACDF_ENVIRONMENT_ONLY
-/// The view of a kind that is not an environment, and its runtime tables, where `survey` is given: only where there
-/// is memory for them.
-void make_view(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) noexcept;
+/// The view of a kind that is not an environment. `tables`: with its runtime tables, where there is memory for
+/// them.
+void make_view(const Parts& parts, bool tables, AcdfFile& file) noexcept;
 #endif
 
 } // namespace acdf

@@ -1,6 +1,7 @@
 #include "build/accuracy/cells.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace acdf::build {
 namespace {
@@ -21,23 +22,37 @@ void descend(const std::uint8_t* tree, std::uint32_t at, const AnyCell& cell, co
     }
 }
 
-void descend(const AcdfHalving* nodes, std::uint32_t at, const AcdfSpan* steps, const AcdfSpan* box,
-             const std::function<void(const Cell&)>& visit) {
-    if (at == ACDF_LEAF) {
-        Cell cell;
-        acdf_halved_ranges(box, cell.range);
-        cell.probability = acdf_span_share(&steps[0]) * acdf_span_share(&steps[1]);
-        return visit(cell);
-    }
+/// A node of `Axes` axes at most, and how random numbers reach it.
+template <std::size_t Axes>
+struct Halved {
+    AcdfSpan steps[Axes], box[Axes];
+};
+
+/// Calls `visit` with each leaf below a node.
+template <std::size_t Axes, class Visit>
+void descend(const AcdfHalving* nodes, std::uint32_t at, const Halved<Axes>& of, const Visit& visit) {
+    if (at == ACDF_LEAF) return visit(of);
     const AcdfHalving node = nodes[at];
     const std::uint32_t axis = node.link & 7u;
     for (std::uint32_t upper = 0; upper < 2; ++upper) {
-        AcdfSpan half_steps[2] = {steps[0], steps[1]}, half_box[2] = {box[0], box[1]};
-        half_steps[axis].end[1 - upper] = node.threshold;
-        half_box[axis].end[1 - upper] = acdf_span_middle(&box[axis]);
+        Halved<Axes> half = of;
+        half.steps[axis].end[1 - upper] = node.threshold;
+        half.box[axis].end[1 - upper] = acdf_span_middle(&of.box[axis]);
         const bool is_leaf = node.link >> (3 + upper) & 1u;
-        descend(nodes, is_leaf ? ACDF_LEAF : upper ? at + (node.link >> 5) : at + 1, half_steps, half_box, visit);
+        descend(nodes, is_leaf ? ACDF_LEAF : upper ? at + (node.link >> 5) : at + 1, half, visit);
     }
+}
+
+/// The same of two axes, with cells.
+void descend(const AcdfHalving* nodes, std::uint32_t at, const AcdfSpan* steps, const AcdfSpan* box,
+             const std::function<void(const Cell&)>& visit) {
+    const Halved<2> of = {{steps[0], steps[1]}, {box[0], box[1]}};
+    descend(nodes, at, of, [&](const Halved<2>& leaf) {
+        Cell cell;
+        acdf_halved_ranges(leaf.box, cell.range);
+        cell.probability = acdf_span_share(&leaf.steps[0]) * acdf_span_share(&leaf.steps[1]);
+        visit(cell);
+    });
 }
 
 template <std::size_t Axes>
@@ -117,8 +132,20 @@ void for_each_tile_cell(const File& file, std::uint32_t tile, const AcdfRange* r
     for_each_cell_in(file, root, range, visit);
 }
 
-void for_each_table_cell(const File& file, std::uint32_t root, const std::function<void(const TableCell&)>& visit) {
-    descend(file.tree(), root, whole<ACDF_MAX_AXES>(file), visit);
+void for_each_table_cell(const File& file, std::uint32_t bin, const std::function<void(const TableCell&)>& visit) {
+    const AcdfTable table = file.table().data();
+    AcdfTablePosition place = {};
+    acdf_table_whole(&table, &place);
+    Halved<ACDF_MAX_AXES> whole;
+    std::copy(std::begin(place.steps), std::end(place.steps), whole.steps);
+    std::copy(std::begin(place.box), std::end(place.box), whole.box);
+    descend(table.nodes, file.bin(bin).root, whole, [&](const Halved<ACDF_MAX_AXES>& leaf) {
+        TableCell cell = {};
+        std::copy(std::begin(leaf.box), std::end(leaf.box), cell.box);
+        std::copy(std::begin(leaf.steps), std::end(leaf.steps), place.steps);
+        cell.probability = acdf_table_probability(&table, &place);
+        visit(cell);
+    });
 }
 
 } // namespace acdf::build

@@ -18,7 +18,12 @@ struct CellOf {
     double probability = 0.0; ///< exactly what acdf_tree_sample returns there
 };
 using Cell = CellOf<2>;
-using TableCell = CellOf<ACDF_MAX_AXES>;
+
+/// A cell of a table: its box on each sampled axis from 0, in grid positions, and its probability.
+struct TableCell {
+    AcdfSpan box[ACDF_MAX_AXES];
+    double probability;
+};
 
 /// Calls `visit` for every cell of an environment, those of probability 0 included. The cells partition
 /// [0, columns) x [0, rows).
@@ -37,8 +42,7 @@ std::vector<std::array<AcdfRange, 2>> tile_boxes(const File& file);
 void for_each_tile_cell(const File& file, std::uint32_t tile, const AcdfRange* range,
                         const std::function<void(const Cell&)>& visit);
 
-/// The same for a tree of any number of axes; on indexed axes, and on those that the file lacks, the range is
-/// of no meaning.
-void for_each_table_cell(const File& file, std::uint32_t root, const std::function<void(const TableCell&)>& visit);
+/// The same for a bin of a table that has energy.
+void for_each_table_cell(const File& file, std::uint32_t bin, const std::function<void(const TableCell&)>& visit);
 
 } // namespace acdf::build

@@ -37,10 +37,9 @@ public:
     void add(const TableCell& cell, Sums& sums) const {
         double volume = 1.0;
         for (std::size_t axis = 0; axis < grid_.dimensions(); ++axis) {
-            const AcdfRange& range = cell.range[grid_.axes[axis]];
-            if (range.tilt != 0.0) throw std::invalid_argument("tables with tilted cells are not measured");
+            const AcdfSpan& span = cell.box[axis];
             Sum length;
-            for (std::uint32_t i = range.low; i < range.high; ++i) length.add(measure_[axis][i]);
+            for (std::uint32_t i = span.end[0]; i < span.end[1]; ++i) length.add(measure_[axis][i]);
             volume *= length.value();
         }
         add_axis(0, 0, cell, cell.probability / volume, 1.0, sums);
@@ -49,9 +48,9 @@ public:
 private:
     void add_axis(std::size_t axis, std::size_t offset, const TableCell& cell, double p, double measure,
                   Sums& sums) const {
-        const AcdfRange& range = cell.range[grid_.axes[axis]];
+        const AcdfSpan& span = cell.box[axis];
         const bool last = axis + 1 == grid_.dimensions();
-        for (std::uint32_t i = range.low; i < range.high; ++i) {
+        for (std::uint32_t i = span.end[0]; i < span.end[1]; ++i) {
             const std::size_t at = offset * grid_.shape[axis] + i;
             if (last) add_value(grid_.values[at] / total_, p, measure * measure_[axis][i], sums);
             else add_axis(axis + 1, at, cell, p, measure * measure_[axis][i], sums);
@@ -83,17 +82,18 @@ struct TableWork {
     std::vector<std::size_t> begin;
 };
 
-TableWork divide(const File& file, std::uint32_t root, const Grid& grid) {
+TableWork divide(const File& file, std::uint32_t bin, const Grid& grid) {
     constexpr std::uint64_t kPoints = 1 << 17;
     TableWork work;
     std::uint64_t points = kPoints;
-    for_each_table_cell(file, root, [&](const TableCell& cell) {
+    for_each_table_cell(file, bin, [&](const TableCell& cell) {
         if (points >= kPoints) {
             work.begin.push_back(work.cells.size());
             points = 0;
         }
         std::uint64_t inside = 1;
-        for (std::uint32_t axis : grid.axes) inside *= cell.range[axis].high - cell.range[axis].low;
+        for (std::size_t axis = 0; axis < grid.dimensions(); ++axis)
+            inside *= cell.box[axis].end[1] - cell.box[axis].end[0];
         points += inside;
         work.cells.push_back(cell);
     });
@@ -124,7 +124,7 @@ BinAccuracy measure_bin(const File& file, std::uint32_t index, const Grid& grid)
     a.lit = bin.lit();
     if (!a.lit) return a;
     if (file.bin(index).share > 0.0f) {
-        const TableWork work = divide(file, file.bin(index).root, grid);
+        const TableWork work = divide(file, index, grid);
         const Sums sums = sum_cells(work, bin);
         a.cells = work.cells.size();
         a.support_violations = sums.violations;

@@ -27,8 +27,8 @@ struct BinAccuracy {
 using TableAccuracy = builder::TableAccuracy;
 
 /// Compares a table file with `bins`, one grid a bin, their axes the sampled ones in order. Only the ratios of
-/// their values and of their measures matter. Throws std::invalid_argument where shapes differ, the file has tilted
-/// curves or nothing has energy. The same for any number of threads.
+/// their values and of their measures matter. Throws std::invalid_argument where shapes differ or nothing has
+/// energy. The same for any number of threads.
 std::vector<BinAccuracy> measure_bins(const File& file, const std::vector<compress::Grid>& bins);
 /// Throws std::invalid_argument where shapes differ.
 void check_shapes(const File& file, const std::vector<compress::Grid>& bins);

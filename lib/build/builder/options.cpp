@@ -220,8 +220,8 @@ build::TableOptions internal(const TableOptions& options, std::uint64_t bins) {
     out.names = options.names;
     out.ranges = options.ranges;
     if (options.goal.kind == Goal::Kind::cells) out.cells = options.goal.cells;
-    out.fit.goal = internal(options.goal, DefaultBudget::table(bins));
-    out.fit.max_weight = options.max_weight;
+    out.goal = internal(options.goal, DefaultBudget::table(bins));
+    out.max_weight = options.max_weight;
     out.mis = internal(options.mis);
     out.other_name = options.other_source.name;
     out.other_sha256 = options.other_source.sha256;

@@ -21,12 +21,14 @@ constexpr std::uint32_t kFewestCodeBits = kCodeBits[0], kMostCodeBits = 12;
 constexpr std::uint32_t kUsualCodeBits = 8;
 constexpr double kEven = 4e-6; // relative variance of one cell, below which there is nothing to halve
 
-/// The most leaves that fit into a chunk.
-inline std::size_t leaves_within(std::uint64_t bytes, std::uint32_t code_bits) {
+/// The most leaves of so many trees that fit into a chunk; 0: not even one each.
+inline std::size_t leaves_within(std::uint64_t bytes, std::uint32_t code_bits, std::uint32_t axis_bits = kAxisBits,
+                                 std::size_t trees = 1) {
     const std::uint64_t bits = std::min<std::uint64_t>(bytes, std::uint64_t{1} << 32) * 8;
-    std::size_t leaves = std::min<std::uint64_t>(bits / (2 + kAxisBits + code_bits) + 1, ACDF_MOST_HALVINGS);
-    while (leaves > 0 && halvings_bytes(leaves, kAxisBits, code_bits) > bytes) --leaves;
-    return leaves;
+    std::size_t leaves =
+        std::min<std::uint64_t>(bits / (2 + axis_bits + code_bits) + trees, std::uint64_t{ACDF_MOST_HALVINGS});
+    while (leaves >= trees && halvings_bytes(leaves, axis_bits, code_bits, trees) > bytes) --leaves;
+    return leaves >= trees ? leaves : 0;
 }
 
 /// What rounding to codes adds to the relative variance: a code of 8 bits about 1.3e-5 a level of the tree, one of

@@ -8,9 +8,17 @@
 
 namespace acdf::compress {
 
-std::size_t halvings_bytes(std::size_t leaves, std::uint32_t axis_bits, std::uint32_t code_bits) {
-    const std::size_t structure = 2 * leaves - 1 + (leaves - 1) * axis_bits, codes = (leaves - 1) * code_bits;
+std::size_t halvings_bytes(std::size_t leaves, std::uint32_t axis_bits, std::uint32_t code_bits,
+                           std::size_t trees) {
+    const std::size_t halvings = leaves - trees;
+    const std::size_t structure = leaves + halvings + halvings * axis_bits, codes = halvings * code_bits;
     return sizeof(AcdfHalvingsHeader) + (structure + 31) / 32 * 4 + (codes + 31) / 32 * 4;
+}
+
+std::uint32_t axis_bits_for(std::size_t axes) {
+    std::uint32_t bits = 0;
+    while (std::size_t{1} << bits < axes) ++bits;
+    return bits;
 }
 
 void halvings_chunk(const Halvings& halvings, std::vector<std::uint8_t>& bytes) {

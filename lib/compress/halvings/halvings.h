@@ -7,7 +7,7 @@
 
 namespace acdf::compress {
 
-/// Nodes in preorder.
+/// Nodes in preorder, of one tree or of several.
 struct Halvings {
     std::uint32_t code_bits = 8;
     std::uint32_t axis_bits = 1;
@@ -17,8 +17,11 @@ struct Halvings {
     std::size_t leaves() const { return axes.size() - codes.size(); }
 };
 
-/// Bytes of chunk HALV.
-std::size_t halvings_bytes(std::size_t leaves, std::uint32_t axis_bits, std::uint32_t code_bits);
+/// Bytes of chunk HALV. `leaves`: of all trees.
+std::size_t halvings_bytes(std::size_t leaves, std::uint32_t axis_bits, std::uint32_t code_bits,
+                           std::size_t trees = 1);
+/// Bits that tell so many axes apart.
+std::uint32_t axis_bits_for(std::size_t axes);
 std::vector<std::uint8_t> halvings_chunk(const Halvings& halvings);
 /// The same in memory that is used again.
 void halvings_chunk(const Halvings& halvings, std::vector<std::uint8_t>& bytes);

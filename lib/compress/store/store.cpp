@@ -246,7 +246,10 @@ std::vector<std::uint8_t> store(const Halvings& tree, const std::vector<std::uin
 std::uint64_t halvings_room(const Description& description, std::uint64_t file_bytes) {
     Halvings leaf;
     leaf.axes = {-1};
-    const std::uint64_t others = store(leaf, description).size() - rounded(halvings_chunk(leaf).size());
+    const std::vector<std::uint32_t> roots(description.shares.size(), ACDF_NO_ROOT);
+    const std::vector<std::uint8_t> file =
+        description.kind == ACDF_KIND_TABLE ? store(leaf, roots, description) : store(leaf, description);
+    const std::uint64_t others = file.size() - rounded(halvings_chunk(leaf).size());
     return file_bytes > others ? (file_bytes - others) / ACDF_ALIGNMENT * ACDF_ALIGNMENT : 0;
 }
 

@@ -91,7 +91,7 @@ std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& desc
 /// The same of a tree of halvings.
 std::vector<std::uint8_t> store(const Halvings& tree, const Description& description,
                                 AcdfCodec codec = ACDF_CODEC_NONE);
-/// The same of a local environment on a tree of halvings; `roots`: of each bin its row, or ACDF_NO_ROOT.
+/// The same of bins; `roots`: of each bin its row or, in tables, its first halving; or ACDF_NO_ROOT.
 std::vector<std::uint8_t> store(const Halvings& tree, const std::vector<std::uint32_t>& roots,
                                 const Description& description, AcdfCodec codec = ACDF_CODEC_NONE);
 /// What chunks DESC and META hold.
@@ -110,7 +110,8 @@ struct ChunkView {
 std::size_t assembled_bytes(const ChunkView* chunks, std::size_t count);
 void assemble(AcdfKind kind, const ChunkView* chunks, std::size_t count, std::uint8_t* file);
 
-/// How many bytes chunk HALV may have in an uncompressed file of `file_bytes`; 0: none fits.
+/// How many bytes chunk HALV may have in an uncompressed file of `file_bytes`, of an environment or a table; 0:
+/// none fits.
 std::uint64_t halvings_room(const Description& description, std::uint64_t file_bytes);
 
 } // namespace acdf::compress

@@ -13,11 +13,11 @@
 //
 // Memory: at most four times the file and its inflated chunks, and 1 MiB; the limits are checked before any of it
 // is allocated. Runtime tables take at most eight times the file and 1 MiB more, and as much again while they are
-// made. Those of environments and tables lie in blocks of 6 MiB that are touched as far as they are needed.
-// LoadOptions leaves them out.
+// made. LoadOptions leaves them out.
 //
-// Local environments and BRDFs of halvings keep 4 bytes for each row and split, with tables or without. That is
-// 9 times the files that acdf makes, and at most 256 times any file (rule 6039).
+// With tables or without, nodes of halvings take 8 bytes each, at most 16 times their chunk. Local environments and
+// BRDFs of halvings keep 4 bytes for each row and split, too. That is 9 times the files that acdf makes, and at
+// most 256 times any file (rule 6039).
 #pragma once
 
 #include <acdf/allocator.h>

@@ -214,21 +214,16 @@ ACDF_INLINE uint32_t acdf_short_curve_sample(const uint8_t* tree, uint32_t units
     return acdf_short_curve_narrow(&curve, segment, &range[curve.axis]);
 }
 
-/* acdf_tree_sample_on of a tree of `units`; 0: how many is not known. */
-ACDF_INLINE double acdf_short_tree_sample_on(const uint8_t* tree, uint32_t units, uint32_t at, double* u,
-                                             AcdfRange* range, double probability) {
-    uint32_t link;
-    do {
-        link = acdf_short_curve_sample(tree, units, at, u, range, &probability);
-        at += link;
-    } while (link != 0);
-    return acdf_positive(probability);
-}
-
-/* acdf_tree_sample of such a tree. */
+/* acdf_tree_sample of a tree of `units`; 0: how many is not known. */
 ACDF_INLINE double acdf_short_tree_sample(const uint8_t* tree, uint32_t units, uint32_t root, double* u,
                                           AcdfRange* range) {
-    return acdf_short_tree_sample_on(tree, units, root, u, range, 1.0);
+    double probability = 1.0;
+    uint32_t link;
+    do {
+        link = acdf_short_curve_sample(tree, units, root, u, range, &probability);
+        root += link;
+    } while (link != 0);
+    return acdf_positive(probability);
 }
 
 /* Finds one segment, of whatever curve: as acdf_tree_find does. Returns the distance to its child, 0 where it ends.
@@ -244,21 +239,16 @@ ACDF_INLINE uint32_t acdf_curve_locate(const uint8_t* tree, uint32_t units, uint
     return acdf_short_curve_narrow(&curve, segment, &range[curve.axis]);
 }
 
-/* acdf_tree_find_on, without strata, of a tree of `units`; 0: how many is not known. */
-ACDF_INLINE double acdf_tree_locate_on(const uint8_t* tree, uint32_t units, uint32_t at, const uint32_t* square,
-                                       AcdfRange* range, double probability) {
-    uint32_t link;
-    do {
-        link = acdf_curve_locate(tree, units, at, square, range, &probability);
-        at += link;
-    } while (link != 0);
-    return probability > 0.0 ? acdf_positive(probability) : 0.0;
-}
-
 /* acdf_tree_find, without strata, of such a tree. */
 ACDF_INLINE double acdf_tree_locate(const uint8_t* tree, uint32_t units, uint32_t root, const uint32_t* square,
                                     AcdfRange* range) {
-    return acdf_tree_locate_on(tree, units, root, square, range, 1.0);
+    double probability = 1.0;
+    uint32_t link;
+    do {
+        link = acdf_curve_locate(tree, units, root, square, range, &probability);
+        root += link;
+    } while (link != 0);
+    return probability > 0.0 ? acdf_positive(probability) : 0.0;
 }
 
 #ifdef __cplusplus

@@ -11,29 +11,54 @@
 #define ACDF_TABLE_H
 
 #include <acdf/sample.h>
-#include <acdf/table_entries.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+/* The lookup grids of a bin: over the random numbers of its sampled axes and over their positions, 2^bits squares
+ * along each axis, the last one fastest. Each square has the deepest node that holds it. */
+typedef struct AcdfTableGrid {
+    uint32_t numbers, positions;  /* number of a start, u32 each; words from the start of the tables */
+    uint32_t all_bits;            /* 0: there are none */
+    uint32_t bits[ACDF_MAX_AXES]; /* of sampled axes, from 0 */
+    uint32_t reserved;
+    uint64_t scale[ACDF_MAX_AXES]; /* step * scale / 2^32 is the square of a grid step */
+} AcdfTableGrid;
+
+/* Where a descent begins. The spans of random numbers of each sampled axis follow, then those of its steps. */
+typedef struct AcdfTableStart {
+    uint32_t node; /* or ACDF_LEAF */
+    uint32_t reserved;
+    double pdf; /* of a leaf; else 0 */
+} AcdfTableStart;
+
+/* Runtime tables, made when a file is opened: flat words without pointers, offsets in words from the start of this
+ * struct. The nodes lie behind it, too. */
+typedef struct AcdfTableLookup {
+    uint32_t words;       /* of all */
+    uint32_t grids;       /* AcdfTableGrid, one a bin */
+    uint32_t starts;      /* AcdfTableStart */
+    uint32_t start_words; /* from one to the next */
+} AcdfTableLookup;
+
 /* A pdf over the sampled axes for each bin of the indexed ones, in a checked file. */
 typedef struct AcdfTable {
-    const uint8_t* tree;        /* chunk TREE */
-    const AcdfBin* bins;        /* row-major over the indexed axes, the last one fastest */
-    const AcdfAxis* axes;       /* indexed ones first */
-    uint32_t axis_count;        /* of both roles, at most ACDF_MAX_AXES */
-    uint32_t indexed_count;     /* less than axis_count */
-    double total;               /* sum over the bins of the integral over the sampled axes */
-    const AcdfPartner* partner; /* null: to be used alone */
-    uint32_t tree_units;        /* of two bytes, that the tree has; 0: not known */
-    const AcdfEntries* entries; /* runtime tables; null: each call searches trees from their roots */
+    const AcdfHalving* nodes;      /* of the trees of all bins */
+    const AcdfBin* bins;           /* row-major over the indexed axes, the last one fastest */
+    const AcdfAxis* axes;          /* indexed ones first */
+    uint32_t axis_count;           /* of both roles, at most ACDF_MAX_AXES */
+    uint32_t indexed_count;        /* less than axis_count */
+    double total;                  /* sum over the bins of the integral over the sampled axes */
+    const AcdfPartner* partner;    /* null: to be used alone */
+    const AcdfTableLookup* lookup; /* null: each call descends from the root */
 } AcdfTable;
 
-/* Where a point falls. */
+/* Where a point falls, on each sampled axis from 0. */
 typedef struct AcdfTablePosition {
-    AcdfRange range[ACDF_MAX_AXES]; /* the cell, on each axis */
-    double position[ACDF_MAX_AXES]; /* the point, in [0, resolution] on each sampled axis */
+    AcdfSpan steps[ACDF_MAX_AXES];  /* of random numbers that lead to the cell */
+    AcdfSpan box[ACDF_MAX_AXES];    /* the cell */
+    double position[ACDF_MAX_AXES]; /* the point, in [0, resolution] */
 } AcdfTablePosition;
 
 #define ACDF_DOUBLE_MIN 2.2250738585072014e-308
@@ -85,165 +110,164 @@ ACDF_FN double acdf_table_border(const AcdfAxis* axis) {
     return 0x1p-48 * (low > high ? low : high) * (double)axis->resolution / fabs(axis->high - axis->low);
 }
 
-/* Fraction across the cell, of a position in it. */
-ACDF_FN double acdf_table_fraction(const AcdfRange* range, double position) {
-    return acdf_clamp((position - (double)range->low) / (double)(range->high - range->low), 0.0, 1.0);
+/* Sampled axis i, from 0. */
+ACDF_FN const AcdfAxis* acdf_table_axis(const AcdfTable* table, uint32_t i) {
+    return &table->axes[table->indexed_count + i];
 }
 
-/* All of each axis, before a tree narrows it: range[axis_count]. */
-ACDF_FN void acdf_table_whole(const AcdfTable* table, AcdfRange* range) {
-    uint32_t axis;
-    for (axis = 0; axis < table->axis_count; ++axis) {
-        range[axis].low = 0;
-        range[axis].high = table->axes[axis].resolution;
-        range[axis].tilt = 0.0;
+/* All random numbers and all of each axis, before a tree narrows them. */
+ACDF_FN void acdf_table_whole(const AcdfTable* table, AcdfTablePosition* place) {
+    const uint32_t count = acdf_table_sampled_count(table);
+    uint32_t i;
+    for (i = 0; i < count; ++i) {
+        place->steps[i].end[0] = place->box[i].end[0] = 0;
+        place->steps[i].end[1] = ACDF_STEPS;
+        place->box[i].end[1] = acdf_table_axis(table, i)->resolution;
     }
 }
 
-/* The pdf of a position in a cell of probability p. Both acdf_table_sample and acdf_table_pdf return the same
- * value, bit for bit, because both call it with the same cell and the same position. */
+/* The probability of a cell. */
+ACDF_FN double acdf_table_probability(const AcdfTable* table, const AcdfTablePosition* place) {
+    const uint32_t count = acdf_table_sampled_count(table);
+    double p = 1.0;
+    uint32_t i;
+    for (i = 0; i < count; ++i) p *= acdf_span_share(&place->steps[i]);
+    return p;
+}
+
+/* The pdf in a cell of probability p. Both acdf_table_sample and acdf_table_pdf return the same value, bit for bit,
+ * because both call it with the same cell. */
 ACDF_FN double acdf_table_cell_pdf(const AcdfTable* table, double p, const AcdfTablePosition* place) {
-    uint32_t axis;
-    for (axis = table->indexed_count; axis < table->axis_count; ++axis) {
-        const AcdfAxis* a = &table->axes[axis];
-        const AcdfRange* range = &place->range[axis];
-        p *= (double)a->resolution / (fabs(a->high - a->low) * (double)(range->high - range->low));
-        if (range->tilt != 0.0) p *= acdf_tilt_pdf(range->tilt, acdf_table_fraction(range, place->position[axis]));
+    const uint32_t count = acdf_table_sampled_count(table);
+    uint32_t i;
+    for (i = 0; i < count; ++i) {
+        const AcdfAxis* a = acdf_table_axis(table, i);
+        const AcdfSpan* box = &place->box[i];
+        p *= (double)a->resolution / (fabs(a->high - a->low) * (double)(box->end[1] - box->end[0]));
     }
     return acdf_clamp(p, ACDF_DOUBLE_MIN, ACDF_DOUBLE_MAX);
 }
 
-/* The grids of a bin; null where its tree is searched from the root. */
-ACDF_INLINE const AcdfEntryBin* acdf_table_entries(const AcdfTable* table, const AcdfBin* bin) {
-    const AcdfEntryBin* entries;
-    if (!table->entries) return 0;
-    entries = acdf_entry_bin(table->entries, (size_t)(bin - table->bins));
-    return entries->positions ? entries : 0;
+/* The square of a step of an axis. */
+ACDF_INLINE uint32_t acdf_table_square(const AcdfTableGrid* grid, uint32_t i, uint32_t step) {
+    return (uint32_t)(step * grid->scale[i] >> 32);
 }
 
-/* acdf_table_sample by the grids of a bin, which has no tilts: where in the cell a point lies is not asked again.
- */
-ACDF_INLINE double acdf_table_entry_sample(const AcdfTable* table, const AcdfEntryBin* grids, const double* u,
-                                           double* x) {
-    const uint32_t first = table->indexed_count, count = table->axis_count - first;
-    const AcdfEntryCurve* curve;
-    double left[ACDF_MAX_AXES], p;
-    AcdfTablePosition place;
-    uint32_t axis;
-    for (axis = first; axis < table->axis_count; ++axis) left[axis] = acdf_unit_interval(u[axis - first]);
-    curve = acdf_entry_of_numbers(table->entries, grids, count, left + first);
-    acdf_entry_ranges(curve, count, place.range + first);
-    p = acdf_short_tree_sample_on(table->tree, table->tree_units, curve->at, left, place.range, curve->probability);
-    for (axis = first; axis < table->axis_count; ++axis) {
-        const double low = (double)place.range[axis].low, high = (double)place.range[axis].high;
-        const double border = grids->axes[axis - first].border, position = low + left[axis] * (high - low);
-        x[axis - first] =
-            acdf_table_coordinate(&table->axes[axis], acdf_clamp(position, low + border, high - border));
+/* Begins a descent to the leaf that steps of random numbers lead to or, `by_position`, that holds grid steps.
+ * Returns where; null: the root, ACDF_LEAF or not, of all there is. */
+ACDF_INLINE const AcdfTableStart* acdf_table_begin(const AcdfTable* table, const AcdfBin* bin, const uint32_t* step,
+                                                   int by_position, AcdfTablePosition* place) {
+    const uint32_t count = acdf_table_sampled_count(table);
+    const uint32_t* words = (const uint32_t*)(const void*)table->lookup;
+    const AcdfTableGrid* grid;
+    const AcdfTableStart* start;
+    const AcdfSpan* spans;
+    uint32_t square = 0, i;
+    grid = words ? (const AcdfTableGrid*)(const void*)(words + table->lookup->grids) + (bin - table->bins) : 0;
+    if (!grid || grid->all_bits == 0) {
+        acdf_table_whole(table, place);
+        return 0;
     }
-    return acdf_table_cell_pdf(table, p, &place);
+    for (i = 0; i < count; ++i)
+        square = square << grid->bits[i] |
+                 (by_position ? acdf_table_square(grid, i, step[i]) : step[i] >> (31u - grid->bits[i]));
+    start = (const AcdfTableStart*)(const void*)(words + table->lookup->starts +
+                                                 (size_t)words[(by_position ? grid->positions : grid->numbers) +
+                                                               square] *
+                                                     table->lookup->start_words);
+    spans = (const AcdfSpan*)(const void*)(start + 1);
+    for (i = 0; i < count; ++i) {
+        place->steps[i] = spans[i];
+        place->box[i] = spans[count + i];
+    }
+    return start;
 }
 
 /* Samples a point. index[indexed_count] as in acdf_table_bin; u[sampled count] in [0, 1], clamped, NaN counts as 0.
- * Fills x[sampled count], monotone in each u within a segment, and returns the pdf there, finite and > 0.
+ * Fills x[sampled count], monotone in each u within a cell, and returns the pdf there, finite and > 0.
  * Returns 0, and leaves x as it is, where there is nothing to sample. */
 ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, const double* u, double* x) {
     const AcdfBin* bin = acdf_table_bin(table, index);
-    const uint32_t first = table->indexed_count;
-    const AcdfEntryBin* grids;
+    const uint32_t count = acdf_table_sampled_count(table);
+    const AcdfTableStart* start;
     AcdfTablePosition place;
-    double left[ACDF_MAX_AXES];
-    double p;
-    uint32_t axis;
+    double number[ACDF_MAX_AXES];
+    uint32_t step[ACDF_MAX_AXES], i;
     if (!bin) return 0.0;
-    grids = acdf_table_entries(table, bin);
-    if (grids) return acdf_table_entry_sample(table, grids, u, x);
-    for (axis = first; axis < table->axis_count; ++axis) left[axis] = acdf_unit_interval(u[axis - first]);
-    acdf_table_whole(table, place.range);
-    p = acdf_tree_sample(table->tree, bin->root, left, place.range);
-    for (axis = first; axis < table->axis_count; ++axis) {
-        const AcdfAxis* a = &table->axes[axis];
-        const AcdfRange* range = &place.range[axis];
+    for (i = 0; i < count; ++i) {
+        number[i] = acdf_unit_interval(u[i]);
+        step[i] = acdf_step_of(number[i]);
+    }
+    start = acdf_table_begin(table, bin, step, 0, &place);
+    acdf_halvings_sample(table->nodes, start ? start->node : bin->root, step, place.steps, place.box);
+    for (i = 0; i < count; ++i) {
+        const AcdfAxis* a = acdf_table_axis(table, i);
+        const double low = (double)place.box[i].end[0], high = (double)place.box[i].end[1];
         const double border = acdf_table_border(a);
-        const double t = acdf_tilt_sample(range->tilt, left[axis]);
-        const double position = (double)range->low + t * (double)(range->high - range->low);
-        x[axis - first] = acdf_table_coordinate(
-            a, acdf_clamp(position, (double)range->low + border, (double)range->high - border));
-        place.position[axis] = acdf_table_position(a, x[axis - first]);
+        const double position = low + acdf_span_fraction(&place.steps[i], number[i]) * (high - low);
+        x[i] = acdf_table_coordinate(a, acdf_clamp(position, low + border, high - border));
     }
-    return acdf_table_cell_pdf(table, p, &place);
+    if (start && start->node == ACDF_LEAF) return start->pdf;
+    return acdf_table_cell_pdf(table, acdf_table_probability(table, &place), &place);
 }
 
-/* Where x[sampled count] lies: its position, and the step of the grid on each sampled axis. Returns 0 for NaN and
- * outside the axes' ranges. */
-ACDF_INLINE int acdf_table_step(const AcdfTable* table, const double* x, double* position, uint32_t* step) {
-    const uint32_t first = table->indexed_count;
-    uint32_t axis;
-    for (axis = first; axis < table->axis_count; ++axis) {
-        const AcdfAxis* a = &table->axes[axis];
-        if (!acdf_table_in_range(a, x[axis - first])) return 0;
-        position[axis] = acdf_table_position(a, x[axis - first]);
-        step[axis] = (uint32_t)position[axis];
-        if (step[axis] >= a->resolution) step[axis] = a->resolution - 1;
-    }
-    return 1;
-}
-
-/* Finds the cell that holds x[sampled count]; `strata` as in acdf_tree_find. Returns its probability; 0 where no
- * sample can fall, for NaN and outside the axes' ranges. A border belongs to the cell of the higher position, the
- * end of an axis to its last cell. */
-ACDF_FN double acdf_table_find(const AcdfTable* table, const uint32_t* index, const double* x,
-                               AcdfTablePosition* place, AcdfStratum* strata) {
+/* The bin of a point x[sampled count] and the grid steps that hold it; null where no sample falls, for NaN and
+ * outside the axes' ranges. A border belongs to the cell of the higher position, the end of an axis to its last
+ * cell. */
+ACDF_INLINE const AcdfBin* acdf_table_steps(const AcdfTable* table, const uint32_t* index, const double* x,
+                                            double* position, uint32_t* step) {
     const AcdfBin* bin = acdf_table_bin(table, index);
-    uint32_t step[ACDF_MAX_AXES];
-    if (!bin || !acdf_table_step(table, x, place->position, step)) return 0.0;
-    acdf_table_whole(table, place->range);
-    return acdf_tree_find(table->tree, bin->root, step, place->range, strata);
+    const uint32_t count = acdf_table_sampled_count(table);
+    uint32_t i;
+    if (!bin) return 0;
+    for (i = 0; i < count; ++i) {
+        const AcdfAxis* a = acdf_table_axis(table, i);
+        if (!acdf_table_in_range(a, x[i])) return 0;
+        position[i] = acdf_table_position(a, x[i]);
+        step[i] = (uint32_t)position[i];
+        if (step[i] >= a->resolution) step[i] = a->resolution - 1;
+    }
+    return bin;
 }
 
-/* acdf_table_pdf by the grids of a bin, which has no tilts. */
-ACDF_INLINE double acdf_table_entry_pdf(const AcdfTable* table, const AcdfEntryBin* grids, const double* x) {
-    const uint32_t first = table->indexed_count, count = table->axis_count - first;
-    const AcdfEntryCurve* curve;
-    uint32_t step[ACDF_MAX_AXES], entry;
-    AcdfTablePosition place;
-    double p;
-    if (!acdf_table_step(table, x, place.position, step)) return 0.0;
-    entry = acdf_entry_of_position(table->entries, grids, count, step + first);
-    if (entry & ACDF_ENTRY_CELL)
-        return ((const double*)(const void*)acdf_entry_words(table->entries,
-                                                             table->entries->densities))[entry & ~ACDF_ENTRY_CELL];
-    curve = acdf_entry_curve(table->entries, entry);
-    acdf_entry_ranges(curve, count, place.range + first);
-    p = acdf_tree_locate_on(table->tree, table->tree_units, curve->at, step, place.range, curve->probability);
-    return p > 0.0 ? acdf_table_cell_pdf(table, p, &place) : 0.0;
+/* Finds the cell that holds x[sampled count]. Returns its probability; 0 where no sample falls. */
+ACDF_FN double acdf_table_find(const AcdfTable* table, const uint32_t* index, const double* x,
+                               AcdfTablePosition* place) {
+    uint32_t step[ACDF_MAX_AXES];
+    const AcdfBin* bin = acdf_table_steps(table, index, x, place->position, step);
+    const AcdfTableStart* start;
+    if (!bin) return 0.0;
+    start = acdf_table_begin(table, bin, step, 1, place);
+    acdf_halvings_find(table->nodes, start ? start->node : bin->root, step, place->steps, place->box);
+    return acdf_table_probability(table, place);
 }
 
 /* The pdf with which acdf_table_sample samples x in the bin of `index`; 0 where no sample falls. */
 ACDF_FN double acdf_table_pdf(const AcdfTable* table, const uint32_t* index, const double* x) {
-    const AcdfBin* bin = acdf_table_bin(table, index);
-    const AcdfEntryBin* grids = bin ? acdf_table_entries(table, bin) : 0;
     AcdfTablePosition place;
+    uint32_t step[ACDF_MAX_AXES];
+    const AcdfBin* bin = acdf_table_steps(table, index, x, place.position, step);
+    const AcdfTableStart* start;
     double p;
-    if (grids) return acdf_table_entry_pdf(table, grids, x);
-    p = acdf_table_find(table, index, x, &place, 0);
+    if (!bin) return 0.0;
+    start = acdf_table_begin(table, bin, step, 1, &place);
+    if (start && start->node == ACDF_LEAF) return start->pdf;
+    acdf_halvings_find(table->nodes, start ? start->node : bin->root, step, place.steps, place.box);
+    p = acdf_table_probability(table, &place);
     return p > 0.0 ? acdf_table_cell_pdf(table, p, &place) : 0.0;
 }
 
 /* The random numbers u[sampled count] for which acdf_table_sample returns x. Returns 1, or 0 (and u unset) where
  * the pdf is 0. */
 ACDF_FN int acdf_table_invert(const AcdfTable* table, const uint32_t* index, const double* x, double* u) {
+    const uint32_t count = acdf_table_sampled_count(table);
     AcdfTablePosition place;
-    AcdfStratum strata[ACDF_MAX_AXES];
-    uint32_t axis;
-    for (axis = 0; axis < table->axis_count; ++axis) {
-        strata[axis].low = 0.0;
-        strata[axis].width = 1.0;
-    }
-    if (!(acdf_table_find(table, index, x, &place, strata) > 0.0)) return 0;
-    for (axis = table->indexed_count; axis < table->axis_count; ++axis) {
-        const AcdfRange* range = &place.range[axis];
-        const double t = acdf_table_fraction(range, place.position[axis]);
-        u[axis - table->indexed_count] = acdf_stratum_number(&strata[axis], range, t);
+    uint32_t i;
+    if (!(acdf_table_find(table, index, x, &place) > 0.0)) return 0;
+    for (i = 0; i < count; ++i) {
+        const double low = (double)place.box[i].end[0], high = (double)place.box[i].end[1];
+        const double t = acdf_clamp((place.position[i] - low) / (high - low), 0.0, 1.0);
+        u[i] = (double)place.steps[i].end[0] * 0x1p-31 + acdf_span_share(&place.steps[i]) * t;
     }
     return 1;
 }

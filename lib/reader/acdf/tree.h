@@ -157,22 +157,17 @@ ACDF_FN uint32_t acdf_curve_sample(const uint8_t* tree, uint32_t at, double* u, 
     return acdf_curve_link(&curve, i);
 }
 
-/* acdf_tree_sample from a curve on that is sampled with a probability. */
-ACDF_FN double acdf_tree_sample_on(const uint8_t* tree, uint32_t at, double* u, AcdfRange* range,
-                                   double probability) {
-    uint32_t link;
-    do {
-        link = acdf_curve_sample(tree, at, u, range, &probability);
-        at += link;
-    } while (link != 0);
-    return acdf_positive(probability);
-}
-
 /* Samples a cell. In: u[axis] in [0, 1] and range[axis] = the whole axis with tilt 0, for each sampled axis.
  * Out: u[axis] in [0, 1] is what is left of the random number, uniform within the cell; range[axis] is the
  * cell. Returns the cell's probability, > 0. */
 ACDF_FN double acdf_tree_sample(const uint8_t* tree, uint32_t root, double* u, AcdfRange* range) {
-    return acdf_tree_sample_on(tree, root, u, range, 1.0);
+    double probability = 1.0;
+    uint32_t link;
+    do {
+        link = acdf_curve_sample(tree, root, u, range, &probability);
+        root += link;
+    } while (link != 0);
+    return acdf_positive(probability);
 }
 
 /* Finds the segment that holds a grid square, as acdf_tree_find does on its way. Returns the distance to its child,
@@ -194,23 +189,18 @@ ACDF_FN uint32_t acdf_curve_find(const uint8_t* tree, uint32_t at, const uint32_
     return width == 0 ? 0 : acdf_curve_link(&curve, i);
 }
 
-/* acdf_tree_find from a curve on that is found with a probability. */
-ACDF_FN double acdf_tree_find_on(const uint8_t* tree, uint32_t at, const uint32_t* square, AcdfRange* range,
-                                 AcdfStratum* strata, double probability) {
-    uint32_t link;
-    do {
-        link = acdf_curve_find(tree, at, square, range, strata, &probability);
-        at += link;
-    } while (link != 0);
-    return probability;
-}
-
 /* Finds the cell that holds the unit grid square at[axis], at[axis] in [0, resolution). `range` as in
  * acdf_tree_sample; `strata` may be null, else strata[axis] = {0, 1} becomes the random numbers that lead
  * here. Returns the cell's probability, 0 where no sample can fall. */
 ACDF_FN double acdf_tree_find(const uint8_t* tree, uint32_t root, const uint32_t* square, AcdfRange* range,
                               AcdfStratum* strata) {
-    return acdf_tree_find_on(tree, root, square, range, strata, 1.0);
+    double probability = 1.0;
+    uint32_t link;
+    do {
+        link = acdf_curve_find(tree, root, square, range, strata, &probability);
+        root += link;
+    } while (link != 0);
+    return probability;
 }
 
 #ifdef __cplusplus

@@ -114,26 +114,28 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
 
 // ---- chunk table ----------------------------------------------------------------------------------------
 
+// In files of which kinds known chunks may be, a bit each, in their order.
+constexpr u8 kinds_of[known_chunks] = {0x3E, 0x3E, 0x2E, 0x3E, 0x04, 0x04, 0x04,
+                                       0x08, 0x16, 0x04, 0x04, 0x3E, 0x20, 0x0C};
+bool belongs(int known, u32 kind) { return kind - 1 > 4 || (kinds_of[known] >> kind & 1); }
+
+// Chunks that must be there.
 constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_TREE};
 constexpr u32 required_beside_halvings = 1, required_count = 3; // the first of them; all
+#ifndef ACDF_ENVIRONMENT_ONLY
 constexpr u32 required_of_maps[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_HALVINGS, ACDF_CHUNK_MAPS};
 constexpr u32 required_of_normals[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_NORMALS};
+constexpr u32 required_of_tables[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_HALVINGS};
 
 // Whether bins of a kind have rows of codes at the top of a tree of halvings.
 bool has_rows(u32 kind) { return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF; }
 
-// Whether a known chunk may be in files of a kind.
-bool belongs(int known, u32 kind) {
-    if (known == chunk_local || known == chunk_visibility || known == chunk_portals || known == chunk_tiles ||
-        known == chunk_rows)
-        return kind == ACDF_KIND_LOCAL;
-    if (known == chunk_normals) return has_rows(kind);
-    if (known == chunk_views) return kind == ACDF_KIND_BRDF;
-    if (known == chunk_partner) return kind != ACDF_KIND_BRDF && kind != ACDF_KIND_INDEXED;
-    if (known == chunk_halvings) return kind != ACDF_KIND_TABLE;
-    if (known == chunk_maps) return kind == ACDF_KIND_INDEXED;
-    return true;
+const u32* required_of(u32 kind, bool halved) {
+    if (kind == ACDF_KIND_INDEXED) return required_of_maps;
+    if (kind == ACDF_KIND_TABLE) return required_of_tables;
+    return halved && has_rows(kind) ? required_of_normals : required_types;
 }
+#endif
 
 // Whether a reader that does not know a chunk must refuse the file.
 bool is_critical(int known) {
@@ -219,11 +221,13 @@ bool has_chunk(const ChunkTable& table, u32 type) {
     return false;
 }
 
-void check_required(const ChunkTable& table, u32 kind, Report& report) {
+void check_required(const ChunkTable& table, [[maybe_unused]] u32 kind, Report& report) {
     const bool halved = has_chunk(table, ACDF_CHUNK_HALVINGS);
-    const u32* types = kind == ACDF_KIND_INDEXED  ? required_of_maps
-                       : halved && has_rows(kind) ? required_of_normals
-                                                  : required_types;
+#ifdef ACDF_ENVIRONMENT_ONLY
+    const u32* types = required_types;
+#else
+    const u32* types = required_of(kind, halved);
+#endif
     const u32 count = halved && types == required_types ? required_beside_halvings : required_count;
     for (u32 i = 0; i < count; ++i)
         if (!has_chunk(table, types[i]))
@@ -275,19 +279,23 @@ void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
 // Another chunk that a tree of halvings does without; null: there is none.
 const char* beside_halvings(const Payloads& payloads, u32 kind) {
     if (payloads.of[chunk_tree].data) return "TREE";
-    if (payloads.of[chunk_bins].data && !has_rows(kind)) return "BINS";
+    if (payloads.of[chunk_bins].data && (kind == ACDF_KIND_ENVIRONMENT || kind == ACDF_KIND_INDEXED)) return "BINS";
     return payloads.of[chunk_tiles].data ? "TILE" : nullptr;
 }
 
-// What is sampled by halvings: an environment or several, or rows of normals or views.
+// What is sampled by halvings: an environment or several, rows of normals or views, or bins of a table.
 void check_halved(const Payloads& payloads, [[maybe_unused]] u32 kind, const AcdfAllocator& allocator,
                   Report& report, Parts& parts) {
     const Payload& halvings = payloads.of[chunk_halvings];
-    if (const char* other = beside_halvings(payloads, kind))
+    if (const char* other = kind == ACDF_KIND_TABLE ? nullptr : beside_halvings(payloads, kind)) // else rule 3013
         report.add(6035, halvings.at(0), "%s is there, too", other);
     if (parts.description->fit != ACDF_FIT_VARIANCE)
         report.add(6035, halvings.at(0), "with fit %u", parts.description->fit);
-    if (!report.stopped()) check_halvings(halvings, report, allocator, parts);
+    if (report.stopped()) return;
+#ifndef ACDF_ENVIRONMENT_ONLY
+    if (kind == ACDF_KIND_TABLE) return check_table_kind(payloads, report, allocator, parts);
+#endif
+    check_halvings(halvings, report, allocator, parts);
     if (report.stopped()) return;
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (kind == ACDF_KIND_INDEXED)
@@ -326,7 +334,8 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
 #ifdef ACDF_ENVIRONMENT_ONLY
     else report.add(5002, description.at(offsetof(AcdfDescription, fit)));
 #else
-    else if (header.kind != ACDF_KIND_INDEXED) check_kind(payloads, header.kind, report, parts); // else rule 3004
+    else if (header.kind != ACDF_KIND_INDEXED && header.kind != ACDF_KIND_TABLE) // else rule 3004
+        check_kind(payloads, header.kind, report, parts);
 #endif
     if (payloads.of[chunk_partner].data && belongs(chunk_partner, header.kind) && !report.stopped())
         check_partner(payloads.of[chunk_partner], header.kind, report, parts);

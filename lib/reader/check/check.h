@@ -109,7 +109,6 @@ struct Parts {
     const std::uint8_t* normal_splits = nullptr;  ///< a bit for each halving; then the codes of each row,
     std::uint64_t normals_size = 0;               ///< of so many bytes
     AcdfPortalTable portals = {};                 ///< beside visibility cells; its header is null where absent
-    class TreeSurvey* survey = nullptr;           ///< given by the caller: made where it costs nothing
 #endif
 };
 

@@ -76,6 +76,8 @@ struct Payloads {
     Payload of[known_chunks];
 };
 
+constexpr std::uint32_t most_steps = 0x7FFFFFFF; ///< of an axis (rule 5014)
+
 inline std::uint64_t round_up(std::uint64_t n, std::uint64_t to) noexcept { return (n + to - 1) / to * to; }
 
 /// DESC. Sets parts.description and parts.axes if its length is right.

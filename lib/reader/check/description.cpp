@@ -14,7 +14,6 @@ using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using ull = unsigned long long;
 
-constexpr u32 max_resolution = 0x7FFFFFFF;
 constexpr u32 max_environment_resolution = 65536;
 constexpr u32 max_metadata_pairs = 1024; // so that comparing all keys stays linear in the bytes
 constexpr u32 max_key_bytes = 255;
@@ -43,7 +42,7 @@ void check_axes(const Payload& payload, u32 count, const AcdfAxis* axes, Report&
         else sampled = sampled || axis.role == ACDF_AXIS_SAMPLED;
         if (axis.measure > ACDF_MEASURE_HALF)
             report.add(5013, at + offsetof(AcdfAxis, measure), "axis %u: measure %u is unknown", i, axis.measure);
-        if (axis.resolution < 1 || axis.resolution > max_resolution)
+        if (axis.resolution < 1 || axis.resolution > most_steps)
             report.add(5014, at + offsetof(AcdfAxis, resolution), "axis %u: it is %u", i, axis.resolution);
         if (axis.reserved != 0)
             report.add(5008, at + offsetof(AcdfAxis, reserved), "axis %u: it is %08x", i, axis.reserved);

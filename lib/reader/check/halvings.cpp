@@ -1,6 +1,11 @@
-// Chunk HALV: its bits become flat nodes in the pass that checks them.
+// Chunk HALV: the bits of its trees become flat nodes in the pass that checks them.
 #include "check/bits.h"
 #include "memory.h"
+#ifndef ACDF_ENVIRONMENT_ONLY
+#include "check/kinds.h"
+
+#include <new>
+#endif
 
 namespace acdf {
 
@@ -10,21 +15,39 @@ using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using ull = unsigned long long;
 
-// Axes of an environment.
-constexpr u32 kAxes = 2;
+// The trees of a chunk, one after the other.
+struct Trees {
+    u32 count = 1, axes = 0;            // axes: that are sampled
+    u32 resolution[ACDF_MAX_AXES] = {}; // of those
+#ifndef ACDF_ENVIRONMENT_ONLY
+    const AcdfBin* bins = nullptr; // each with a share has a tree; null: there is one tree
+    u32 bin_count = 0;
+    u64 bins_at = 0; // where BINS is
+#endif
+};
 
-// The open ends of a tree are at most one a level of each axis, and one more.
-constexpr u32 most_open_nodes = 31 * kAxes + 1;
-
+// `kAxes`: the most that are sampled.
+template <u32 kAxes>
 class HalvingsChecker {
 public:
-    HalvingsChecker(const Payload& payload, Report& report, const Parts& parts)
-        : payload_(payload), header_(*reinterpret_cast<const AcdfHalvingsHeader*>(payload.data)), report_(report) {
-        for (u32 axis = 0; axis < parts.description->axis_count; ++axis)
-            if (parts.axes[axis].role == ACDF_AXIS_SAMPLED) resolution_[axes_++] = parts.axes[axis].resolution;
-        while (1u << axis_bits_ < axes_) ++axis_bits_;
+    HalvingsChecker(const Payload& payload, Report& report, const Trees& trees)
+        : payload_(payload), header_(*reinterpret_cast<const AcdfHalvingsHeader*>(payload.data)), report_(report),
+          trees_(trees) {
+        while (1u << axis_bits_ < trees_.axes) ++axis_bits_;
     }
 
+    void run(const AcdfAllocator& allocator, Parts& parts) {
+        if (payload_.size < sizeof header_)
+            return report_.add(6030, payload_.at(0), "%llu bytes", static_cast<ull>(payload_.size));
+        if (!header_is_right()) return;
+        const std::size_t bytes = (header_.halving_count + std::size_t{1}) * sizeof(AcdfHalving);
+        parts.halvings_block = take_block(allocator, bytes);
+        if (parts.halvings_block.data)
+            return make_nodes(static_cast<AcdfHalving*>(parts.halvings_block.data), parts);
+        report_.add(1003, payload_.at(0), "%llu bytes for nodes", static_cast<ull>(bytes));
+    }
+
+private:
     bool header_is_right() {
         const u32 bits = header_.code_bits;
         if (bits < ACDF_LEAST_CODE_BITS || bits > ACDF_MOST_CODE_BITS ||
@@ -46,36 +69,66 @@ public:
         Bits structure(payload_, sizeof header_, codes_begin), codes(payload_, codes_begin, payload_.size);
         for (u32 code = 0; code < 1u << header_.code_bits; ++code)
             share_[code] = acdf_halving_share(code, header_.code_bits);
-        Open root = {};
-        root.parent = ACDF_LEAF;
-        for (u32 axis = 0; axis < axes_; ++axis) {
-            root.steps[axis] = {{0, ACDF_STEPS}};
-            root.box[axis] = {{0, resolution_[axis]}};
-        }
-        open_[0] = root;
-        open_count_ = 1;
-        while (open_count_ > 0)
-            if (!take_node(structure, codes, nodes)) return;
+#ifdef ACDF_ENVIRONMENT_ONLY
+        if (!take_tree(structure, codes, nodes)) return;
+#else
+        if (!take_trees(structure, codes, nodes)) return;
+#endif
         if (made_ != header_.halving_count)
             return report_.add(6031, structure.place(), "%u nodes are halved, not %u", made_,
                                header_.halving_count);
+#ifndef ACDF_ENVIRONMENT_ONLY
+        if (wrong_bin_ != kNone)
+            return report_.add(9007, trees_.bins_at + u64{wrong_bin_} * sizeof(AcdfBin), "bin %u: %u instead of %u",
+                               wrong_bin_, trees_.bins[wrong_bin_].root, right_root_);
+#endif
         parts.halvings = nodes;
         parts.halving_count = made_;
         check_zero(structure, "structure");
         check_zero(codes, "codes");
     }
 
-private:
     struct Open {
         AcdfSpan steps[kAxes], box[kAxes];
         u32 parent; // ACDF_LEAF: the root
         bool upper, dark;
     };
 
+    // The open ends of a tree are at most one a level of each axis, and one more.
+    static constexpr u32 kMostOpen = 31 * kAxes + 1;
+
     u64 structure_words() const {
         const u64 count = header_.halving_count;
-        return words_for(2 * count + 1 + count * axis_bits_);
+        return words_for(2 * count + trees_.count + count * axis_bits_);
     }
+
+    bool take_tree(Bits& structure, Bits& codes, AcdfHalving* nodes) {
+        open_[0] = {};
+        open_[0].parent = ACDF_LEAF;
+        for (u32 axis = 0; axis < trees_.axes; ++axis) {
+            open_[0].steps[axis] = {{0, ACDF_STEPS}};
+            open_[0].box[axis] = {{0, trees_.resolution[axis]}};
+        }
+        open_count_ = 1;
+        while (open_count_ > 0)
+            if (!take_node(structure, codes, nodes)) return false;
+        return true;
+    }
+
+#ifndef ACDF_ENVIRONMENT_ONLY
+    bool take_trees(Bits& structure, Bits& codes, AcdfHalving* nodes) {
+        if (!trees_.bins) return take_tree(structure, codes, nodes);
+        for (u32 bin = 0; bin < trees_.bin_count; ++bin) {
+            const u32 first = made_;
+            if (trees_.bins[bin].share > 0.0f && !take_tree(structure, codes, nodes)) return false;
+            const u32 root = made_ > first ? first : ACDF_NO_ROOT;
+            if (trees_.bins[bin].root == root || wrong_bin_ != kNone) continue;
+            wrong_bin_ = bin;
+            right_root_ = root;
+        }
+        return true;
+    }
+#endif
 
     void check_zero(Bits& bits, const char* what) {
         const u64 at = bits.place();
@@ -97,9 +150,10 @@ private:
             report_.add(6031, at, "more than %u nodes are halved", header_.halving_count);
             return false;
         }
-        const u32 axis = structure.take(axis_bits_);
-        if (axis >= axes_ || node.box[axis].end[1] - node.box[axis].end[0] < 2) {
-            report_.add(6032, at, axis >= axes_ ? "axis %u of %u" : "axis %u: one step is left", axis, axes_);
+        const u32 axis = axis_bits_ > 0 ? structure.take(axis_bits_) : 0;
+        if (axis >= trees_.axes || node.box[axis].end[1] - node.box[axis].end[0] < 2) {
+            report_.add(6032, at, axis >= trees_.axes ? "axis %u of %u" : "axis %u: one step is left", axis,
+                        trees_.axes);
             return false;
         }
         return divide(node, axis, at, codes, nodes);
@@ -131,31 +185,51 @@ private:
     const Payload& payload_;
     const AcdfHalvingsHeader& header_;
     Report& report_;
-    u32 axes_ = 0, axis_bits_ = 0, made_ = 0, open_count_ = 0;
-    u32 resolution_[kAxes] = {};
+    const Trees& trees_;
+    u32 axis_bits_ = 0, made_ = 0, open_count_ = 0;
+#ifndef ACDF_ENVIRONMENT_ONLY
+    static constexpr u32 kNone = 0xFFFFFFFFu;
+    u32 wrong_bin_ = kNone, right_root_ = 0; // the first bin whose root is wrong
+#endif
     u32 share_[1u << ACDF_MOST_CODE_BITS];
-    Open open_[most_open_nodes];
+    Open open_[kMostOpen];
 };
+
+// False where rule 5014 is broken.
+bool find_axes(const Parts& parts, Trees& trees) {
+    for (u32 axis = 0; axis < parts.description->axis_count; ++axis)
+        if (parts.axes[axis].role == ACDF_AXIS_SAMPLED) {
+            const u32 steps = trees.resolution[trees.axes++] = parts.axes[axis].resolution;
+            if (steps == 0 || steps > most_steps) return false;
+        }
+    return true;
+}
 
 } // namespace
 
 void check_halvings(const Payload& payload, Report& report, const AcdfAllocator& allocator, Parts& parts) noexcept {
-    if (payload.size < sizeof(AcdfHalvingsHeader)) {
-        report.add(6030, payload.at(0), "%llu bytes", static_cast<ull>(payload.size));
-        return;
-    }
-    u32 sampled = 0;
-    for (u32 axis = 0; axis < parts.description->axis_count; ++axis)
-        sampled += parts.axes[axis].role == ACDF_AXIS_SAMPLED;
-    if (sampled != kAxes) return; // check_environment_axes reports it
-    HalvingsChecker checker(payload, report, parts);
-    if (!checker.header_is_right()) return;
-    const u32 count = reinterpret_cast<const AcdfHalvingsHeader*>(payload.data)->halving_count;
-    const std::size_t bytes = (count + std::size_t{1}) * sizeof(AcdfHalving);
-    parts.halvings_block = take_block(allocator, bytes);
-    if (!parts.halvings_block.data)
-        return report.add(1003, payload.at(0), "%llu bytes for nodes", static_cast<ull>(bytes));
-    checker.make_nodes(static_cast<AcdfHalving*>(parts.halvings_block.data), parts);
+    Trees trees;
+    if (!find_axes(parts, trees) || trees.axes != 2) return; // reported elsewhere
+    HalvingsChecker<2>(payload, report, trees).run(allocator, parts);
 }
+
+#ifndef ACDF_ENVIRONMENT_ONLY
+void check_table_halvings(const Payload& payload, const Payload& bins, Report& report,
+                          const AcdfAllocator& allocator, Parts& parts) noexcept {
+    Trees trees;
+    if (!find_axes(parts, trees) || trees.axes == 0) return; // reported elsewhere
+    trees.bins = parts.bins;
+    trees.bins_at = bins.at(0);
+    trees.bin_count = parts.description->bin_count;
+    trees.count = 0;
+    for (u32 bin = 0; bin < trees.bin_count; ++bin) trees.count += parts.bins[bin].share > 0.0f;
+    using Checker = HalvingsChecker<ACDF_MAX_AXES>;
+    AcdfBlock block = take_block({}, sizeof(Checker)); // too much for the small stacks of WebAssembly
+    if (!block.data)
+        return report.add(1003, payload.at(0), "%llu bytes to check nodes", static_cast<ull>(sizeof(Checker)));
+    (new (block.data) Checker(payload, report, trees))->run(allocator, parts);
+    give_block({}, block);
+}
+#endif
 
 } // namespace acdf

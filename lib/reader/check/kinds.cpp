@@ -24,7 +24,6 @@ void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Pa
     if (kind == ACDF_KIND_ENVIRONMENT) check_environment(description, bins, report, parts);
     if (kind == ACDF_KIND_LOCAL) check_local(payloads, boxes, report, parts);
     if (kind == ACDF_KIND_BRDF) check_brdf_kind(payloads, report, parts);
-    if (kind == ACDF_KIND_TABLE) check_table_kind(description, bins, report, parts);
 }
 
 } // namespace acdf

@@ -1,6 +1,5 @@
 // Trees as they usually lie, in one pass: what tree.cpp finds nothing wrong with.
 #include "check/tree_roots.h"
-#include "tables/tree_survey.h"
 
 #include <acdf/squares.h>
 
@@ -153,17 +152,13 @@ public:
     explicit Preorder(const CheckedTree& tree) : tree_(tree), roots_(tree), work_(u64{2} * tree.units) {
         for (u32 axis = 0; axis < ACDF_MAX_AXES; ++axis)
             if (tree.sampled(axis)) resolution_[axis] = tree.parts.axes[axis].resolution;
-        if (tree.kind == ACDF_KIND_ENVIRONMENT || tree.kind == ACDF_KIND_TABLE) survey_ = tree.parts.survey;
     }
 
     bool is_right() {
-        if (survey_ && !survey_->begin(tree_.units)) survey_ = nullptr;
         next_root();
         while (next_ < tree_.units)
             if (!curve()) return false;
-        const bool right = open_count_ == 0 && !has_root_ && curves_ <= tree_.units / 2 + 1;
-        if (right && survey_) survey_->end(cells_);
-        return right;
+        return open_count_ == 0 && !has_root_ && curves_ <= tree_.units / 2 + 1;
     }
 
 private:
@@ -174,7 +169,6 @@ private:
         u32 children;
         u32 tilted;      ///< axes, above it
         Inherited range; ///< of its axis
-        u32 cells;       ///< cells_ before it
     };
 
     void next_root() { has_root_ = roots_.next(root_); }
@@ -187,7 +181,6 @@ private:
             if (range_[axis].low > range_[axis].high || range_[axis].high >= 0x80000000u) return false;
         }
         tilted_ = 0;
-        ++cells_;
         return true;
     }
 
@@ -224,14 +217,7 @@ private:
             !tilts_are_right(curve))
             return false;
         next_ = static_cast<u32>(next);
-        const u32 cells = cells_;
-        cells_ += curve.segments - 1;
-        if (curve.tilts) survey_ = nullptr;
-        if (curve.links) {
-            if (!open(curve, at, cells)) return false;
-        } else if (survey_ && !TreeSurvey::ends(curve.header)) {
-            survey_->add(at, curve.segments);
-        }
+        if (curve.links && !open(curve, at)) return false;
         leave();
         return true;
     }
@@ -239,7 +225,6 @@ private:
     bool pass(const Short& curve) {
         const Inherited range = range_[curve.axis];
         next_ = curve.next;
-        cells_ += curve.segments - 1;
         const bool right =
             !(tilted_ >> curve.axis & 1) && resolution_[curve.axis] != 0 && curve.knot < range.high - range.low;
         leave();
@@ -252,12 +237,11 @@ private:
             const Open& last = open_[--open_count_];
             range_[acdf_curve_axis(&last.curve)] = last.range;
             tilted_ = last.tilted;
-            if (survey_) survey_->add(last.at, cells_ - last.cells + 1);
         }
     }
 
     // Segments without probability have no children.
-    bool open(const AcdfCurve& curve, u32 at, u32 cells) {
+    bool open(const AcdfCurve& curve, u32 at) {
         u32 children = 0, low = 0;
         for (u32 i = 0; i < curve.segments; ++i) {
             const u32 high = acdf_curve_cumulative(&curve, i + 1);
@@ -266,7 +250,7 @@ private:
             children += linked;
             low = high;
         }
-        open_[open_count_++] = {curve, at, 0, children, tilted_, range_[acdf_curve_axis(&curve)], cells};
+        open_[open_count_++] = {curve, at, 0, children, tilted_, range_[acdf_curve_axis(&curve)]};
         return true;
     }
 
@@ -292,8 +276,6 @@ private:
 
     const CheckedTree& tree_;
     TreeRoots roots_;
-    TreeSurvey* survey_ = nullptr;       ///< null: none is made
-    u32 cells_ = 0;                      ///< of the trees so far, had they no more curves
     u64 work_;                           ///< links that may be looked at in vain
     u32 resolution_[ACDF_MAX_AXES] = {}; ///< 0: not sampled
     Inherited range_[ACDF_MAX_AXES] = {};

@@ -27,8 +27,9 @@ const Rule rules[] = {
     {3002, error, "critical-chunk", "A critical chunk is of a known type."},
     {3003, error, "duplicate-chunk", "No two chunks are of one type."},
     {3004, error, "missing-chunk",
-     "DESC is there, and BINS and TREE are unless HALV is; in files of kind 5 HALV and MAPS are, and beside HALV "
-     "in files of kinds 2 and 3 BINS and NORM."},
+     "DESC is there, and BINS and TREE are unless HALV is; in kinds 4 and 5 HALV is, with BINS or MAPS; beside "
+     "HALV "
+     "in kinds 2 and 3 BINS and NORM are."},
     {3005, error, "codec", "`codec` is 0 (none), 1 (zlib) or, of TREE, 2 (planes)."},
     {3006, error, "chunk-offset",
      "A payload starts at the first multiple of 64 after what comes before it, in the table's order."},
@@ -124,7 +125,7 @@ const Rule rules[] = {
      "more on its axis."},
     {6034, error, "halvings-padding", "The padding of HALV is zero."},
     {6035, error, "halvings-alone",
-     "HALV comes without TREE and TILE, without BINS but in kinds 2 and 3, and with fit 4."},
+     "HALV comes without TREE and TILE, without BINS but in kinds 2 to 4, and with fit 4."},
     {6036, error, "maps",
      "MAPS is as long as its counts say: as many maps as bins, at most as many splits as halvings, codes of 4 to "
      "12 "
@@ -209,6 +210,9 @@ const Rule rules[] = {
     {9005, error, "table-shares",
      "The shares of a table's bins, added up in their order, differ from 1 by no more than 2^-20."},
     {9006, error, "table-weights", "The `channels` of a table are 0 and its channel weights 1, 0, 0."},
+    {9007, error, "table-roots",
+     "A table's `root` is how many nodes are halved before its tree, FFFFFFFF where that is a leaf or there is "
+     "none."},
 };
 const std::size_t rule_count = sizeof rules / sizeof rules[0];
 

@@ -13,16 +13,24 @@ using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using ull = unsigned long long;
 
-constexpr u32 most_steps = 0x7FFFFFFF; // rule 5014
-
-void check_table_shares(const Payload& bins, Report& report, const Parts& parts) {
+// Sets parts.bins if BINS has its length and its shares say which bins have trees.
+void check_table_bins(const Payload& payload, Report& report, Parts& parts) {
+    const u32 count = parts.description->bin_count;
+    if (payload.size != u64{count} * sizeof(AcdfBin))
+        return report.add(4004, payload.at(0), "BINS has %llu bytes", static_cast<ull>(payload.size));
+    const auto* bins = reinterpret_cast<const AcdfBin*>(payload.data);
     double sum = 0.0;
-    for (u32 i = 0; parts.bins && i < parts.description->bin_count; ++i) {
-        if (!(parts.bins[i].share >= 0.0f)) return; // rule 6017
-        sum += static_cast<double>(parts.bins[i].share);
+    bool right = true;
+    for (u32 i = 0; i < count && !report.stopped(); ++i) {
+        const float share = bins[i].share;
+        sum += static_cast<double>(share);
+        if (share >= 0.0f && std::isfinite(share)) continue;
+        right = false;
+        report.add(6017, payload.at(i * sizeof(AcdfBin)), "bin %u: %g", i, static_cast<double>(share));
     }
-    if (parts.bins && std::isfinite(sum) && !(std::fabs(sum - 1.0) <= 0x1p-20))
-        report.add(9005, bins.at(0), "their sum is %.9g", sum);
+    if (!right) return;
+    parts.bins = bins;
+    if (!(std::fabs(sum - 1.0) <= 0x1p-20)) report.add(9005, payload.at(0), "their sum is %.9g", sum);
 }
 
 void check_table_weights(const Payload& payload, Report& report, const AcdfDescription& d) {
@@ -35,10 +43,7 @@ void check_table_weights(const Payload& payload, Report& report, const AcdfDescr
                w[0], w[1], w[2]);
 }
 
-} // namespace
-
-void check_table_kind(const Payload& payload, const Payload& bin_records, Report& report,
-                      const Parts& parts) noexcept {
+void check_table_axes(const Payload& payload, Report& report, const Parts& parts) {
     const AcdfDescription& d = *parts.description;
     if (d.parameterization != ACDF_PARAM_TABLE) return; // rule 5016: what the axes mean is open
     u64 bins = 1;                                       // no more than 2^32: then it is wrong anyway
@@ -59,11 +64,21 @@ void check_table_kind(const Payload& payload, const Payload& bin_records, Report
             report.add(9004, at + offsetof(AcdfAxis, low), "axis %u: %u steps from %g to %g", i, axis.resolution,
                        axis.low, axis.high);
     }
-    check_table_weights(payload, report, d);
-    check_table_shares(bin_records, report, parts);
     if (bins != d.bin_count && bins != 0) // 0: rule 5014
         report.add(9003, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins, its axes make %llu",
                    d.bin_count, static_cast<ull>(bins));
+}
+
+} // namespace
+
+void check_table_kind(const Payloads& payloads, Report& report, const AcdfAllocator& allocator,
+                      Parts& parts) noexcept {
+    const Payload &description = payloads.of[chunk_description], &bins = payloads.of[chunk_bins];
+    check_table_axes(description, report, parts);
+    check_table_weights(description, report, *parts.description);
+    if (bins.data && !report.stopped()) check_table_bins(bins, report, parts); // else rule 3004
+    if (parts.bins && !report.stopped())
+        check_table_halvings(payloads.of[chunk_halvings], bins, report, allocator, parts);
 }
 
 } // namespace acdf

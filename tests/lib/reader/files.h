@@ -33,7 +33,7 @@ inline EnvironmentSpec complete_environment() {
 }
 inline FileSpec complete_file() { return complete_environment().file(); }
 
-/// The same tree as a table with a third axis, which no curve splits.
+/// A table of three axes, the last of which has one step.
 inline FileSpec spare_file() {
     FileSpec file = complete_file();
     DescriptionSpec description;
@@ -42,14 +42,14 @@ inline FileSpec spare_file() {
     description.weigh_as_table();
     file.kind = 4;
     file.chunks[0].raw = description.encode();
+    file.chunks[2] = {"HALV", HalvingsSpec{8, 2, {{0, 100}, {1, 200}, {}, {}, {}}}.encode()};
     return file;
 }
 
-/// The same tree as a table of 2 x 3 bins over two sampled axes: what kind 4 asks for.
+/// A table of 2 x 3 bins over two sampled axes, two bins without energy, two of more cells than one. Bytes of HALV:
+/// 16 of header, 4 of structure (16 bits), 4 of codes.
 inline FileSpec table_file() {
-    EnvironmentSpec spec = complete_environment();
-    for (CurveSpec& curve : spec.tree.curves) curve.axis += 2;
-    FileSpec file = spec.file();
+    FileSpec file = complete_file();
     DescriptionSpec description;
     description.parameterization = 3;
     description.bin_count = 6;
@@ -58,8 +58,12 @@ inline FileSpec table_file() {
     description.weigh_as_table();
     file.kind = 4;
     file.chunks[0].raw = description.encode();
+    constexpr std::uint32_t none = 0xFFFFFFFF;
     file.chunks[1].raw =
-        encode(std::vector<BinSpec>{{0, 0.5f}, {6, 0.25f}, {0, 0.125f}, {0, 0}, {6, 0}, {0, 0.125f}});
+        encode(std::vector<BinSpec>{{0, 0.5f}, {none, 0.25f}, {2, 0.125f}, {none, 0}, {none, 0}, {3, 0.125f}});
+    file.chunks[2] = {
+        "HALV",
+        HalvingsSpec{8, 1, {{0, 100}, {1, 200}, {}, {}, {}, {}, {1, 128}, {}, {}, {0, 255}, {}, {}}}.encode()};
     return file;
 }
 

@@ -17,16 +17,25 @@ using namespace acdf::test;
 
 TEST(TableView, OneAxisByHand) {
     // [10, 20): 1/4 over two steps, 3/4 over eight.
-    compress::Cascade cascade;
-    cascade.curves.push_back({0, {2}, {0.25, 0.75}, {}, {}});
-    cascade.roots = {0};
-    const LoadedTable loaded(table_file(cascade, {axis("x", 10, 10.0, 20.0)}));
+    TableTrees trees;
+    trees.halvings.code_bits = 12;
+    trees.halvings.axis_bits = 0;
+    trees.halvings.axes = {0, 0, -1, -1, -1}; // [0, 5), of that [0, 2) and [2, 5); [5, 10)
+    const compress::HalvingCodes codes(12);
+    for (const double share : {0.53125, 0.25 / 0.53125})
+        trees.halvings.codes.push_back(
+            static_cast<std::uint16_t>(codes.best(ACDF_STEPS, share, 1.0 - share, 1.0, 1.0)));
+    trees.roots = {0};
+    const LoadedTable loaded(table_file(trees, {axis("x", 10, 10.0, 20.0)}));
     const TableView view = loaded.file.table();
     EXPECT_EQ(view.sampled_count(), 1u);
     EXPECT_EQ(view.indexed_count(), 0u);
     EXPECT_EQ(view.share(nullptr), 1.0);
     double x = 0.0, u = 0.125;
-    EXPECT_NEAR(view.sample(nullptr, &u, &x), 0.125, 1e-5);
+    const std::uint32_t lower = codes.lower(ACDF_STEPS, trees.halvings.codes[0]);
+    const double of_first = codes.lower(lower, trees.halvings.codes[1]) * 0x1p-31;
+    EXPECT_NEAR(of_first, 0.25, 1e-4); // as near as codes are
+    EXPECT_EQ(view.sample(nullptr, &u, &x), 0.5 * of_first);
     EXPECT_NEAR(x, 11.0, 1e-3);
     for (const double at : {10.0, 11.999}) EXPECT_NEAR(view.pdf(nullptr, &at), 0.125, 1e-3) << at;
     for (const double at : {12.0, 15.0, 20.0}) EXPECT_NEAR(view.pdf(nullptr, &at), 0.09375, 1e-3) << at;
@@ -35,9 +44,9 @@ TEST(TableView, OneAxisByHand) {
 }
 
 TEST(TableView, TheCInterfaceGivesTheSame) {
-    compress::Cascade cascade;
-    RandomTableTree(1, {9, 7}, 0, true).add_bin(cascade);
-    const std::vector<std::uint8_t> bytes = table_file(cascade, {axis("x", 9, 0, 3), axis("y", 7, 2, 1)});
+    RandomTableTrees random(1, {9, 7});
+    random.add_bin();
+    const std::vector<std::uint8_t> bytes = table_file(random.trees, {axis("x", 9, 0, 3), axis("y", 7, 2, 1)});
     const std::unique_ptr<AcdfFile, decltype(&acdf_close)> handle(
         acdf_from_memory(bytes.data(), bytes.size(), nullptr), acdf_close);
     ASSERT_TRUE(handle);
@@ -61,7 +70,7 @@ TEST(TableView, PdfIsExactlyThatOfTheSampleAndInvertLeadsBack) {
     for (const Space& space : spaces()) {
         for (std::uint64_t seed = 0; seed < 12; ++seed) {
             SCOPED_TRACE(std::string(space.name) + " " + std::to_string(seed));
-            const LoadedTable loaded(random_table(space, seed, seed % 2));
+            const LoadedTable loaded(random_table(space, seed));
             const TableView view = loaded.file.table();
             std::mt19937_64 random(seed);
             for (int n = 0; n < 2000; ++n) {
@@ -71,7 +80,7 @@ TEST(TableView, PdfIsExactlyThatOfTheSampleAndInvertLeadsBack) {
                 ASSERT_TRUE(pdf > 0.0 && std::isfinite(pdf));
                 ASSERT_EQ(view.pdf(nullptr, x), pdf);
                 ASSERT_TRUE(view.invert(nullptr, x, back));
-                ASSERT_NEAR(view.sample(nullptr, back, again), pdf, 0.02 * pdf) << "another cell";
+                ASSERT_EQ(view.sample(nullptr, back, again), pdf) << "another cell";
                 for (std::size_t i = 0; i < space.axes.size(); ++i) {
                     const double low = std::min(space.axes[i].low, space.axes[i].high);
                     const double high = std::max(space.axes[i].low, space.axes[i].high);
@@ -83,14 +92,55 @@ TEST(TableView, PdfIsExactlyThatOfTheSampleAndInvertLeadsBack) {
     }
 }
 
+TEST(TableView, LookupGridsChangeNothing) {
+    int made = 0;
+    for (const Space& space : spaces()) {
+        SCOPED_TRACE(space.name);
+        std::vector<std::uint32_t> resolution;
+        for (const auto& a : space.axes) resolution.push_back(a.resolution);
+        RandomTableTrees random_trees(5, resolution);
+        for (int bin = 0; bin < 40; ++bin) bin % 7 == 3 ? random_trees.add_none() : random_trees.add_bin();
+        std::vector<float> shares;
+        for (int bin = 0; bin < 40; ++bin) shares.push_back(bin % 7 == 3 ? 0.0f : 1.0f / 34);
+        std::vector<compress::AxisDescription> axes = {axis("bin", 40, 0.0, 1.0, ACDF_AXIS_INDEXED)};
+        axes.insert(axes.end(), space.axes.begin(), space.axes.end());
+        if (axes.size() > ACDF_MAX_AXES) continue;
+        const LoadedTable loaded(table_file(random_trees.trees, axes, shares));
+        LoadOptions options;
+        options.tables = false;
+        File plain;
+        ASSERT_TRUE(File::from_memory(loaded.bytes.data(), loaded.bytes.size(), plain, options).ok());
+        const TableView fast = loaded.file.table(), slow = plain.table();
+        EXPECT_EQ(slow.data().lookup, nullptr);
+        EXPECT_LE(loaded.file.table_bytes(),
+                  8 * loaded.file.size() + (1u << 20) + 8 * random_trees.trees.halvings.codes.size());
+        made += fast.data().lookup != nullptr;
+        std::mt19937_64 random(1);
+        for (std::uint32_t n = 0; n < 20000; ++n) {
+            const std::uint32_t bin = n % 40;
+            double u[8] = {}, x[8] = {}, y[8] = {}, back[8] = {}, again[8] = {};
+            for (std::size_t i = 0; i < space.axes.size(); ++i) u[i] = next_double(random);
+            ASSERT_EQ(fast.sample(&bin, u, x), slow.sample(&bin, u, y));
+            for (std::size_t i = 0; i < space.axes.size(); ++i) {
+                ASSERT_EQ(x[i], y[i]);
+                const auto& a = space.axes[i];
+                if (n % 2 == 0) x[i] = a.low + (a.high - a.low) * uniform(random); // anywhere
+            }
+            ASSERT_EQ(fast.pdf(&bin, x), slow.pdf(&bin, x));
+            ASSERT_EQ(fast.invert(&bin, x, back), slow.invert(&bin, x, again));
+            for (std::size_t i = 0; i < space.axes.size(); ++i) ASSERT_EQ(back[i], again[i]);
+        }
+    }
+    EXPECT_GE(made, 3);
+}
+
 TEST(TableView, OutOfRangeAndBadNumbersAreSafe) {
-    compress::Cascade cascade;
-    RandomTableTree tree(3, {6, 7}, 2, true);
-    for (int bin = 0; bin < 6; ++bin) tree.add_bin(cascade);
+    RandomTableTrees random(3, {6, 7});
+    for (int bin = 0; bin < 6; ++bin) bin == 4 ? random.add_none() : random.add_bin();
     std::vector<float> shares(6, 0.2f);
     shares[4] = 0.0f; // index 1, 1: nothing there
     const LoadedTable loaded(
-        table_file(cascade,
+        table_file(random.trees,
                    {axis("i", 2, 0, 2, ACDF_AXIS_INDEXED), axis("j", 3, 0, 3, ACDF_AXIS_INDEXED),
                     axis("x", 6, 0, 1), axis("y", 7, 0, 1)},
                    shares));
@@ -119,12 +169,11 @@ TEST(TableView, OutOfRangeAndBadNumbersAreSafe) {
     }
 }
 
-// Bins are row-major over the indexed axes: each one's pdf sits in the step of its own number.
 // A coordinate decides, not its position, which rounding brings back to the end.
 TEST(TableView, CoordinatesNextToTheEndsAreOutside) {
-    const compress::Cascade cascade = {{{0, {}, {1.0}, {}, {}}}, {0}};
+    const TableTrees whole = compress::whole_cells({1.0f});
     for (const auto& [low, high] : {std::pair{-1.0, 1.0}, {1.0, -1.0}, {-3.0, 0.1}, {1e9, 1e9 + 1.0}}) {
-        const auto bytes = table_file(cascade, {axis("x", 3, low, high)});
+        const auto bytes = table_file(whole, {axis("x", 3, low, high)});
         File file;
         ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
         const TableView view = file.table();
@@ -136,20 +185,26 @@ TEST(TableView, CoordinatesNextToTheEndsAreOutside) {
     }
 }
 
+// Bins are row-major over the indexed axes: each one's pdf sits in the step of its own number.
 TEST(TableView, BinsAreRowMajor) {
-    compress::Cascade cascade;
+    TableTrees trees;
+    trees.halvings.axis_bits = 0;
     for (std::uint32_t bin = 0; bin < 12; ++bin) {
-        compress::Curve curve;
-        curve.axis = 2;
-        for (std::uint32_t i = 1; i < 12; ++i) curve.knots.push_back(i);
-        curve.probability.assign(12, 0.0);
-        curve.probability[bin] = 1.0;
-        cascade.roots.push_back(bin);
-        cascade.curves.push_back(curve);
+        trees.roots.push_back(static_cast<std::uint32_t>(trees.halvings.codes.size()));
+        AcdfSpan left = {{0, 12}};
+        std::size_t behind = 0;
+        for (; left.end[1] - left.end[0] > 1;) { // all on the side of the step, the other one dark
+            const std::uint32_t middle = acdf_span_middle(&left), upper = bin >= middle;
+            trees.halvings.axes.push_back(0);
+            trees.halvings.codes.push_back(upper ? 0 : 255);
+            if (upper) trees.halvings.axes.push_back(-1);
+            else ++behind;
+            left.end[1 - upper] = middle;
+        }
+        trees.halvings.axes.insert(trees.halvings.axes.end(), 1 + behind, -1);
     }
     const LoadedTable loaded(table_file(
-        cascade,
-        {axis("i", 3, 0, 3, ACDF_AXIS_INDEXED), axis("j", 4, 0, 4, ACDF_AXIS_INDEXED), axis("x", 12, 0, 12)},
+        trees, {axis("i", 3, 0, 3, ACDF_AXIS_INDEXED), axis("j", 4, 0, 4, ACDF_AXIS_INDEXED), axis("x", 12, 0, 12)},
         std::vector<float>(12, 1.0f / 12)));
     for (std::uint32_t i = 0; i < 3; ++i)
         for (std::uint32_t j = 0; j < 4; ++j) {
@@ -161,7 +216,7 @@ TEST(TableView, BinsAreRowMajor) {
         }
 }
 
-/// Integral of the pdf over each grid box, by the midpoint or, with tilts, exactly: it is linear on each axis.
+/// Integral of the pdf over each grid box.
 std::vector<double> box_probabilities(const TableView& view, const std::vector<std::uint32_t>& shape) {
     std::vector<double> out;
     ShapeVector index(shape.size(), 0);
@@ -188,9 +243,9 @@ TEST(TableView, PdfIntegratesToOneAndSamplesFollowIt) {
         std::vector<compress::AxisDescription> axes;
         for (std::size_t k = 0; k < shape.size(); ++k)
             axes.push_back(axis("x" + std::to_string(k), shape[k], 1.0 - double(k), -2.0 * double(k)));
-        compress::Cascade cascade;
-        RandomTableTree(seed, shape, 0, seed % 2).add_bin(cascade);
-        const LoadedTable loaded(table_file(cascade, axes));
+        RandomTableTrees random_trees(seed, shape);
+        random_trees.add_bin();
+        const LoadedTable loaded(table_file(random_trees.trees, axes));
         const TableView view = loaded.file.table();
         const std::vector<double> expected = box_probabilities(view, shape);
         double sum = 0.0;

@@ -1,7 +1,11 @@
 // Random tables over axes of any number, range and order.
 #pragma once
 
+#include "compress/halvings/codes.h"
+#include "compress/tables/fit.h"
 #include "tests/inputs/table_files.h"
+
+#include <acdf/halvings.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -13,14 +17,14 @@
 namespace acdf::test {
 
 using acdf_test::uniform;
+using compress::TableTrees;
 
 inline compress::AxisDescription axis(const std::string& name, std::uint32_t resolution, double low, double high,
                                       AcdfAxisRole role = ACDF_AXIS_SAMPLED) {
     return {name, role, ACDF_MEASURE_LINEAR, resolution, low, high};
 }
 
-inline std::vector<std::uint8_t> table_file(const compress::Cascade& cascade,
-                                            std::vector<compress::AxisDescription> axes,
+inline std::vector<std::uint8_t> table_file(const TableTrees& trees, std::vector<compress::AxisDescription> axes,
                                             std::vector<float> shares = {1.0f}) {
     compress::Description description;
     description.kind = ACDF_KIND_TABLE;
@@ -28,59 +32,56 @@ inline std::vector<std::uint8_t> table_file(const compress::Cascade& cascade,
     for (const int i : {0, 1, 2}) description.channel_weights[i] = i == 0 ? 1.0 : 0.0;
     description.axes = std::move(axes);
     description.shares = std::move(shares);
-    return compress::store(compress::encode_tree(cascade), description);
+    return compress::store(trees.halvings, trees.roots, description);
 }
 
-/// A random tree over `resolution`, some segments tilted or dark.
-class RandomTableTree {
+/// Random trees over `resolution`, some of whose nodes are dark.
+class RandomTableTrees {
 public:
-    RandomTableTree(std::uint64_t seed, std::vector<std::uint32_t> resolution, std::uint32_t first_axis,
-                    bool tilted)
-        : random_(seed), resolution_(std::move(resolution)), first_axis_(first_axis), tilted_(tilted) {}
-
-    void add_bin(compress::Cascade& cascade) {
-        cascade.roots.push_back(static_cast<std::uint32_t>(cascade.curves.size()));
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges;
-        for (const std::uint32_t n : resolution_) ranges.emplace_back(0, n);
-        add(cascade, ranges, 0);
+    RandomTableTrees(std::uint64_t seed, std::vector<std::uint32_t> resolution, std::uint32_t code_bits = 8)
+        : random_(seed), resolution_(std::move(resolution)) {
+        trees.halvings.code_bits = code_bits;
+        trees.halvings.axis_bits = compress::axis_bits_for(resolution_.size());
     }
 
-private:
-    using Ranges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+    TableTrees trees;
 
-    std::int32_t add(compress::Cascade& cascade, const Ranges& ranges, int depth) {
-        const auto index = static_cast<std::int32_t>(cascade.curves.size());
-        cascade.curves.emplace_back();
-        compress::Curve curve;
-        const std::size_t axis = random_() % ranges.size();
-        const auto [low, high] = ranges[axis];
-        curve.axis = first_axis_ + static_cast<std::uint32_t>(axis);
-        for (std::uint32_t at = low + 1; at < high; ++at)
-            if (random_() % (1 + (high - low) / 3) == 0) curve.knots.push_back(at);
-        double sum = 0.0;
-        for (std::size_t i = 0; i < curve.segments(); ++i) {
-            curve.probability.push_back(i > 0 && random_() % 5 == 0 ? 0.0 : 0.1 + uniform(random_));
-            sum += curve.probability.back();
+    void add_bin() {
+        const auto first = static_cast<std::uint32_t>(trees.halvings.codes.size());
+        std::vector<AcdfSpan> box;
+        for (const std::uint32_t n : resolution_) box.push_back({{0, n}});
+        add(box, std::vector<AcdfSpan>(resolution_.size(), AcdfSpan{{0, ACDF_STEPS}}), 0);
+        trees.roots.push_back(trees.halvings.codes.size() > first ? first : std::uint32_t{ACDF_NO_ROOT});
+    }
+    /// A bin without energy.
+    void add_none() { trees.roots.push_back(ACDF_NO_ROOT); }
+
+private:
+    void add(std::vector<AcdfSpan> box, std::vector<AcdfSpan> steps, int depth) {
+        const std::size_t axis = random_() % box.size();
+        const std::uint32_t wide = steps[axis].end[1] - steps[axis].end[0];
+        if (box[axis].end[1] - box[axis].end[0] < 2 || wide < 2 || depth > 10 || random_() % 8 == 0)
+            return trees.halvings.axes.push_back(-1);
+        const std::uint32_t bits = trees.halvings.code_bits, last = (1u << bits) - 1;
+        const auto code = random_() % 8 == 0 ? (random_() % 2 ? last : 0u)
+                                             : 1u + static_cast<std::uint32_t>(random_() % (last - 1));
+        trees.halvings.axes.push_back(static_cast<std::int8_t>(axis));
+        trees.halvings.codes.push_back(static_cast<std::uint16_t>(code));
+        const std::uint32_t middle = acdf_span_middle(&box[axis]);
+        const std::uint32_t threshold =
+            acdf_halving_threshold(&steps[axis], code, bits, acdf_halving_share(code, bits));
+        for (std::uint32_t upper = 0; upper < 2; ++upper) {
+            std::vector<AcdfSpan> half_box = box, half_steps = steps;
+            half_box[axis].end[1 - upper] = middle;
+            half_steps[axis].end[1 - upper] = threshold;
+            const bool dark = half_steps[axis].end[0] == half_steps[axis].end[1];
+            if (dark) trees.halvings.axes.push_back(-1);
+            else add(half_box, half_steps, depth + 1);
         }
-        curve.children.assign(curve.segments(), -1);
-        const bool tilted = tilted_ && random_() % 2;
-        if (tilted) curve.tilts.assign(curve.segments(), 0.0);
-        for (std::size_t i = 0; i < curve.segments(); ++i) {
-            curve.probability[i] /= sum;
-            Ranges inside = ranges;
-            inside[axis] = {i == 0 ? low : curve.knots[i - 1], i + 1 == curve.segments() ? high : curve.knots[i]};
-            if (curve.probability[i] > 0.0 && depth < 4 && !tilted && random_() % 3)
-                curve.children[i] = add(cascade, inside, depth + 1);
-            else if (tilted) curve.tilts[i] = 1.8 * uniform(random_) - 0.9;
-        }
-        cascade.curves[static_cast<std::size_t>(index)] = std::move(curve);
-        return index;
     }
 
     std::mt19937_64 random_;
     std::vector<std::uint32_t> resolution_;
-    std::uint32_t first_axis_;
-    bool tilted_;
 };
 
 struct Space {
@@ -99,13 +100,13 @@ inline std::vector<Space> spaces() {
             {"eight", eight}};
 }
 
-/// The file of a random tree over a space: of steps up to the 1000th of an axis.
-inline std::vector<std::uint8_t> random_table(const Space& space, std::uint64_t seed, bool tilted) {
+/// The file of a random tree over a space.
+inline std::vector<std::uint8_t> random_table(const Space& space, std::uint64_t seed) {
     std::vector<std::uint32_t> resolution;
-    for (const auto& a : space.axes) resolution.push_back(std::min(a.resolution, 1000u));
-    compress::Cascade cascade;
-    RandomTableTree(seed, resolution, 0, tilted).add_bin(cascade);
-    return table_file(cascade, space.axes);
+    for (const auto& a : space.axes) resolution.push_back(a.resolution);
+    RandomTableTrees random(seed, resolution, 2 + static_cast<std::uint32_t>(seed % 11));
+    random.add_bin();
+    return table_file(random.trees, space.axes);
 }
 
 inline double next_double(std::mt19937_64& random) {

@@ -38,7 +38,9 @@ inline Action<Bytes()> payload_double(const char* type, std::size_t at, double v
     return payload_field(type, at, 8, bits);
 }
 
-// The same for a table whose third axis no curve splits.
+constexpr std::uint32_t kNoRoot = 0xFFFFFFFF;
+
+// The same for a table whose third axis has one step.
 inline Action<Bytes()> third_axis(std::size_t at, int size, std::uint64_t value) {
     return [=] {
         Bytes file = spare_file().encode();
@@ -71,8 +73,8 @@ inline Action<Bytes()> table_range(double low, double high) { // of the first sa
 inline Action<Bytes()> table_shares(float first) { // of six bins, the others together a half
     return [=] {
         FileSpec file = table_file();
-        file.chunks[1].raw =
-            encode(std::vector<BinSpec>{{0, first}, {6, 0.25f}, {0, 0.125f}, {0, 0}, {6, 0}, {0, 0.125f}});
+        file.chunks[1].raw = encode(std::vector<BinSpec>{
+            {0, first}, {kNoRoot, 0.25f}, {2, 0.125f}, {kNoRoot, 0}, {kNoRoot, 0}, {3, 0.125f}});
         return file.encode();
     };
 }

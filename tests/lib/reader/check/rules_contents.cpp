@@ -111,8 +111,8 @@ std::vector<Case> description_cases() {
         {5015, "nan", third_axis(32, 8, 0x7FF8000000000000)},
         {5015, "infinite", third_axis(40, 8, 0x7FF0000000000000)},
         {5016, "half_angle", payload_field("DESC", 0, 4, 2)},
-        {5016, "octahedral_table", [] { return octahedral_axes([](FileSpec& f) { f.kind = 4; })(); }},
-        {5016, "environment_as_table", header_field(24, 4, 4)},
+        {5016, "octahedral_table", table_field(0, 4, 4)},
+        {5016, "environment_as_table", table_field(0, 4, 1)},
         {5017, "count", payload_field("META", 0, 4, 3)},
         {5017, "fewer", payload_field("META", 0, 4, 1)},
         {5017, "many", payload_field("META", 0, 4, 1025)},
@@ -277,25 +277,59 @@ std::vector<Case> tree_cases() {
     };
 }
 
+namespace {
+
+Action<Bytes()> table_chunk(std::size_t chunk, Action<void(Bytes&)> change) {
+    return [=] {
+        FileSpec file = table_file();
+        change(file.chunks[chunk].raw);
+        return file.encode();
+    };
+}
+Action<Bytes()> table_root(std::size_t bin, std::uint32_t root) {
+    return table_chunk(1, [=](Bytes& raw) { set(raw, 8 * bin, 4, root); });
+}
+Action<Bytes()> table_without(std::size_t chunk) {
+    return [=] {
+        FileSpec file = table_file();
+        file.chunks.erase(file.chunks.begin() + static_cast<std::ptrdiff_t>(chunk));
+        return file.encode();
+    };
+}
+// As many halvings as the table has by its count, whatever nodes there are.
+Action<Bytes()> table_halvings(const std::vector<HalvingSpec>& nodes) {
+    return table_chunk(2, [=](Bytes& raw) {
+        raw = HalvingsSpec{8, 1, nodes}.encode();
+        set(raw, 0, 4, 4);
+    });
+}
+Action<Bytes()> spare_halvings(const std::vector<HalvingSpec>& nodes) {
+    return [=] {
+        FileSpec file = spare_file();
+        file.chunks[2].raw = HalvingsSpec{8, 2, nodes}.encode();
+        return file.encode();
+    };
+}
+
+} // namespace
+
 std::vector<Case> table_cases() {
     return {
         {9001, "cosine", table_field(64 + 3 * 48 + 20, 4, 1)},
         {9001, "indexed_cosine", table_field(64 + 20, 4, 1)},
         {9002, "sampled_first",
          [] {
-             FileSpec file = table_file(); // exchanges axes 1 and 2; curves on axis 1 are then on a sampled one
+             FileSpec file = table_file(); // exchanges axes 1 and 2
              Bytes& raw = file.chunks[0].raw;
              std::swap_ranges(raw.begin() + 64 + 48, raw.begin() + 64 + 96, raw.begin() + 64 + 96);
-             EnvironmentSpec tree = complete_environment();
-             for (CurveSpec& curve : tree.tree.curves) curve.axis = curve.axis == 0 ? 1 : 3;
-             file.chunks[2].raw = tree.file().chunks[2].raw;
              return file.encode();
          }},
         {9003, "fewer_bins",
          [] {
              FileSpec file = table_file();
              set(file.chunks[0].raw, 24, 4, 5);
-             file.chunks[1].raw = encode(std::vector<BinSpec>(5, {0, 0.2f}));
+             file.chunks[1].raw = encode(std::vector<BinSpec>(5, {kNoRoot, 0.2f}));
+             file.chunks[2].raw = HalvingsSpec{8, 1, std::vector<HalvingSpec>(5)}.encode();
              return file.encode();
          }},
         {9003, "longer_axis", table_field(64 + 24, 4, 3)},
@@ -316,12 +350,36 @@ std::vector<Case> table_cases() {
         {9005, "none",
          [] {
              FileSpec file = table_file();
-             file.chunks[1].raw = encode(std::vector<BinSpec>(6, {0, 0.0f}));
+             file.chunks[1].raw = encode(std::vector<BinSpec>(6, {kNoRoot, 0.0f}));
+             file.chunks[2].raw = HalvingsSpec{}.encode();
              return file.encode();
          }},
         {9006, "separate", table_field(28, 4, 1)},
         {9006, "first", table_field(32, 8, 0x3FE0000000000000)},
         {9006, "second", table_field(40, 8, 0x3FE0000000000000)},
+        {9007, "of_one_cell", table_root(1, 2)},
+        {9007, "without_energy", table_root(3, 2)},
+        {9007, "of_another_tree", table_root(2, 0)},
+        {9007, "in_its_own_tree", table_root(0, 1)},
+        {9007, "missing", table_root(5, kNoRoot)},
+        {9007, "enormous", table_root(5, 0xFFFFFFFE)},
+        {3004, "table_without_halvings", table_without(2)},
+        {3004, "table_without_bins", table_without(1)},
+        {3013, "curves_of_a_table",
+         [] {
+             FileSpec file = table_file();
+             file.chunks.push_back(complete_file().chunks[2]);
+             return file.encode();
+         }},
+        {4004, "bins_of_a_table", table_chunk(1, [](Bytes& raw) { raw.resize(40); })},
+        {6017, "share_of_a_table", table_chunk(1, [](Bytes& raw) { set(raw, 12, 4, 0x7FC00000); })},
+        {6030, "trees_of_a_table", table_chunk(2, [](Bytes& raw) { raw.resize(20); })},
+        {6031, "fewer_in_a_table", table_halvings({{0, 100}, {1, 200}, {}, {}, {}, {}, {1, 128}, {}, {}, {}})},
+        {6032, "axis_of_a_table", spare_halvings({{3, 100}, {1, 200}, {}, {}, {}})},
+        {6032, "one_step_of_a_table", spare_halvings({{2, 100}, {1, 200}, {}, {}, {}})},
+        {6033, "below_a_dark_node_of_a_table", spare_halvings({{0, 0}, {1, 200}, {}, {}, {}})},
+        {6034, "behind_the_trees", table_chunk(2, [](Bytes& raw) { set(raw, 19, 1, 0x80); })},
+        {6035, "fit_of_a_table", table_field(4, 4, 2)},
     };
 }
 } // namespace acdf_test

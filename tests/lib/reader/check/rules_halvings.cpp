@@ -70,10 +70,6 @@ Make with_chunks(const std::vector<std::size_t>& curves) { // 1: BINS, 2: TREE o
 Make of_fit(std::uint32_t fit) {
     return halved_file([=](FileSpec& f) { set(f.chunks[0].raw, 4, 4, fit); });
 }
-Make beside(FileSpec other) {
-    other.chunks.push_back(halved().file().chunks[1]);
-    return [=] { return other.encode(); };
-}
 
 } // namespace
 
@@ -84,14 +80,6 @@ std::vector<Case> halvings_cases() {
          halved_file([](FileSpec& f) { f.chunks.erase(f.chunks.begin()); })},
         {3005, "planes_of_halvings", halv_record(8, 4, 2)},
         {3009, "ancillary_halvings", halv_record(4, 4, 0)},
-        {3013, "halvings_of_a_table", beside(table_file())},
-        {3013, "halvings_instead_of_curves_of_a_table",
-         [] {
-             FileSpec table = table_file();
-             table.chunks.erase(table.chunks.begin() + 1, table.chunks.begin() + 3);
-             table.chunks.push_back(halved().file().chunks[1]);
-             return table.encode();
-         }},
         {6035, "halvings_beside_curves_of_a_brdf",
          [] {
              FileSpec brdf = shared_brdf().file();
