@@ -138,6 +138,15 @@ std::vector<Case> halvings_cases() {
 
 namespace {
 
+// Where ends do not fit into 31 bits, middles are none, and there is no end to halving.
+TEST(HalvingsRules, axesThatAreTooLongAreNotHalved) {
+    constexpr std::size_t depth = 2000;
+    std::vector<HalvingSpec> nodes = {{0, 1}, {}};
+    nodes.insert(nodes.end(), depth, HalvingSpec{0, 3}); // the lower half, again and again
+    nodes.insert(nodes.end(), depth + 1, HalvingSpec{});
+    EXPECT_EQ(findings(tree(0xFFFFFFFF, 8, nodes, 2).encode()).rules, (std::multiset<int>{5014, 7001}));
+}
+
 TEST(HalvingsRules, whatIsAtTheirLimitsIsRight) {
     expect_valid(halved().encode());
     expect_valid(tree(8, 8, {{}}).encode());                                        // a leaf
