@@ -19,7 +19,7 @@
 namespace acdf::build {
 namespace {
 
-constexpr std::uint64_t max_bins = 1 << 20; // each has a partition of its own while it is fitted
+constexpr std::uint64_t max_bins = 1 << 20; // each has a tree of its own
 
 std::string number(double value, const char* format = "%.9g") {
     char text[32];
