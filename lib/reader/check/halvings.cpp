@@ -26,8 +26,8 @@ struct Trees {
 #endif
 };
 
-// `kAxes`: the most that are sampled.
-template <u32 kAxes>
+// `MostAxes`: the most that are sampled.
+template <u32 MostAxes>
 class HalvingsChecker {
 public:
     HalvingsChecker(const Payload& payload, Report& report, const Trees& trees)
@@ -89,13 +89,13 @@ private:
     }
 
     struct Open {
-        AcdfSpan steps[kAxes], box[kAxes];
+        AcdfSpan steps[MostAxes], box[MostAxes];
         u32 parent; // ACDF_LEAF: the root
         bool upper, dark;
     };
 
     // The open ends of a tree are at most one a level of each axis, and one more.
-    static constexpr u32 kMostOpen = 31 * kAxes + 1;
+    static constexpr u32 kMostOpen = 31 * MostAxes + 1;
 
     u64 structure_words() const {
         const u64 count = header_.halving_count;
