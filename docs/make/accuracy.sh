@@ -57,11 +57,11 @@ octahedral() {
 
 e2() {
     local row
-    echo "| row | knots | uniform: RMS error of the PDF | cdf | factor | pdf, factor | variance, factor |"
-    echo "|---|---|---|---|---|---|---|"
+    echo "| row | knots | uniform: RMS error of the PDF | cdf | factor | pdf, factor |"
+    echo "|---|---|---|---|---|---|"
     for row in auto-peaky auto-smooth; do
         "$acdf" scanline "$data/probes/grace_probe.hdr" --projection angular --row $row --json 2> /dev/null > "$results/e2-$row.json"
-        jq -r --arg row "${row#auto-}" "$jq_lib"' .row as $r | .points[] | "| \($row) (\($r)) | \(.segments) | \(.uniform.rms_error|sig) | \(.cdf.rms_error|sig) | \(.cdf.factor|sig)× | \(.pdf.factor|sig)× | \(.variance.factor|sig)× |"' \
+        jq -r --arg row "${row#auto-}" "$jq_lib"' .row as $r | .points[] | "| \($row) (\($r)) | \(.segments) | \(.uniform.rms_error|sig) | \(.cdf.rms_error|sig) | \(.cdf.factor|sig)× | \(.pdf.factor|sig)× |"' \
             "$results/e2-$row.json"
     done
 }

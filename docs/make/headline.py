@@ -76,7 +76,7 @@ def headline():
     return f"""- **Small.** A 64 KiB file, {max(small.bytes, large.bytes) / 1e6:.2f} MB in memory with its tables, replaces a full-resolution CDF of {small.full_bytes / 1e6:.1f} MB. One sample
   of the map's light has a relative variance of {min(sizes):.2g} to {max(sizes):.2g} on
   [six probes](docs/appendix/accuracy-environment.md#sizes) with nearest lookup; that of the full CDF is 0.
-- **For each surface normal.** `acdf local --shape small` (1 MB) samples light × cosine for any normal. With light samples
+- **For each surface normal.** `acdf local` (1 MB) samples light × cosine for any normal. With light samples
   only and nothing hidden, variance is {min(local):.0f} to {max(local):.0f} times lower than with the full-resolution CDF
   ([geometric mean {mean:.0f}](docs/appendix/accuracy-local.md#sizes)). With shadows the gain is smaller:
   [{span(shadows, "{:.1f}")} times](docs/appendix/accuracy-local.md#pictures) in three scenes, and

@@ -24,7 +24,7 @@ field() { jq -r ".$2" "$1"; }
 build() {
     local name=$1 file=$2 projection=$3
     shift 3
-    "$acdf" local "$probes/$file" --projection "$projection" --shape small -o "$work/$name.acdf" --force --quiet "$@" > /dev/null
+    "$acdf" local "$probes/$file" --projection "$projection" --filter nearest -o "$work/$name.acdf" --force --quiet "$@" > /dev/null
     "$acdf" measure "$work/$name.acdf" --against "$probes/$file" --projection "$projection" --quiet --json ${baselines:+--baselines} \
         > "$work/$name.json"
 }

@@ -66,7 +66,7 @@ noise() {
 
 # The pdfs of one local file for two normals.
 local_file() {
-    "$acdf" local "$data/probes/venice_sunset_1k.hdr" --shape small -o "$work/venice_sunset.acdf" --force --quiet
+    "$acdf" local "$data/probes/venice_sunset_1k.hdr" -o "$work/venice_sunset.acdf" --force --quiet
     "$acdf" plot "$work/venice_sunset.acdf" -o "$work/1.png" --normal 0,0,1 --width 512 --no-knots --range 1e-5:10 --force --quiet
     "$acdf" plot "$work/venice_sunset.acdf" -o "$work/2.png" --normal 1,0.3,0.2 --width 512 --no-knots --range 1e-5:10 --force --quiet
     side_by_side local "$work"/[12].png

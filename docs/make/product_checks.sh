@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# product_checks.sh BUILD DATA: checks acdf/product/product.h at 200 shading points for each of eight probes, in both shapes, and eleven BRDFs, and writes
+# product_checks.sh BUILD DATA: checks acdf/product/product.h at 200 shading points for each of eight probes and eleven BRDFs, and writes
 # the table of docs/appendix/product-checks.md. BUILD: a release build with -DACDF_BUILD_BENCHMARKS=ON; DATA holds probes/ and brdfs/.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -9,11 +9,9 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/acdf-checks-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 lights=()
 while read -r name options; do
-    for shape in small halvings; do
-        # shellcheck disable=SC2086
-        "$build/tools/acdf" local "$data/probes/$name" $options --budget 256KiB --shape $shape -o "$work/$name.$shape.acdf" --quiet
-        lights+=("$work/$name.$shape.acdf")
-    done
+    # shellcheck disable=SC2086
+    "$build/tools/acdf" local "$data/probes/$name" $options --budget 256KiB -o "$work/$name.acdf" --quiet
+    lights+=("$work/$name.acdf")
 done <<'ROWS'
 grace_probe.hdr --projection angular
 stpeters_cross.hdr
