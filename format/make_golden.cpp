@@ -245,8 +245,59 @@ RowHalvings five_rows(std::uint32_t columns, std::uint32_t rows) {
     return out;
 }
 
+/// Four cells, told apart by position and, in the last two, by the normal's z; two of them mixed at each border.
+/// `regions`: the first and the last part tiles in one place, those between them in another.
+Chunk visibility_chunk(bool regions) {
+    Chunk chunk{ACDF_CHUNK_VISIBILITY, {}};
+    const AcdfVisibility header = {
+        3, 4, 2, regions, {-1, -2, 0}, {3, 2, 4}, {{0, 0, 1, 0.5f}, {1, 0, 0, 0}, {0, 1, 0, 0}}}; // y up, moved
+    const AcdfVisibilitySplit splits[] = {
+        {1.0f, 0.25f, 0 | ACDF_VISIBILITY_ROW << 3, 1},
+        {0.5f, 0.5f, 1 | (ACDF_VISIBILITY_ROW | 1) << 3, 2},
+        {0.25f, 0.125f, 5 | (ACDF_VISIBILITY_ROW | 2) << 3, ACDF_VISIBILITY_ROW | 3}};
+    const AcdfColumn columns[] = {{2, 0}, {1, 0x8000}, {1, 0x8001}, {3, 0x8000}};
+    const std::uint16_t set_of_row[] = {0, 1, 1, 0};
+    const std::uint8_t rows[] = {240, 30,  200, 200, 254, 7, // all light and odds of each
+                                 17,  100, 128, 90,  180, 44};
+    const auto add = [&](const void* data, std::size_t size) {
+        const auto* first = static_cast<const std::uint8_t*>(data);
+        chunk.bytes.insert(chunk.bytes.end(), first, first + size);
+    };
+    add(&header, sizeof header);
+    add(splits, sizeof splits);
+    add(columns, regions ? sizeof columns : sizeof columns / 2);
+    if (regions) add(set_of_row, sizeof set_of_row);
+    add(rows, sizeof rows);
+    return chunk;
+}
+
+/// Two portals that face two ways, in pieces, beside visibility_chunk. The last place samples by rows alone.
+Chunk portals_chunk() {
+    Chunk chunk{ACDF_CHUNK_PORTALS, {}};
+    const AcdfPortals header = {2, 2, 3, 2};
+    const AcdfPortal portals[] = {{{4, -1, 0.5f}, {2, 2.5f}, 0}, {{1, 4, 1}, {1.5f, 1}, 1}};
+    const AcdfPortalMap maps[] = {{{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}, 0.0078125f},
+                                  {{{-0.8f, 0.6f, 0}, {0, 0, 1}, {0.6f, 0.8f, 0}}, 0.015625f}};
+    const std::uint32_t sums[] = {0, 0, 0, 0, 0, 3, 4, 9,  0, 5, 21, 27, 0, 8, 25, 40,  // of the first map
+                                  0, 0, 0, 0, 0, 1, 9, 10, 0, 2, 12, 18, 0, 7, 19, 26}; // of the second
+    const std::uint8_t rows[] = {12,  250, 240, 200, 255, 30,  90,  180, 251,           //
+                                 99,  100, 250, 251, 252, 200, 210, 220, 230,           //
+                                 3,   255, 255, 255, 255, 17,  255, 255, 255,           //
+                                 255, 1,   2,   3,   4,   5,   6,   7,   8};
+    const auto add = [&](const void* data, std::size_t size) {
+        const auto* first = static_cast<const std::uint8_t*>(data);
+        chunk.bytes.insert(chunk.bytes.end(), first, first + size);
+    };
+    add(&header, sizeof header);
+    add(portals, sizeof portals);
+    add(maps, sizeof maps);
+    add(sums, sizeof sums);
+    add(rows, sizeof rows);
+    return chunk;
+}
+
 /// A local environment on a tree of halvings; a bin is not stored.
-Golden local_halvings() {
+Golden local(const char* name, float cosine_share, const std::vector<Chunk>& visibility = {}) {
     Description d = environment_description(24, 14);
     const RowHalvings tree = five_rows(24, 14);
     d.kind = ACDF_KIND_LOCAL;
@@ -258,8 +309,9 @@ Golden local_halvings() {
         roots.push_back(bin == 7 ? ACDF_NO_ROOT : bin % 5);
         d.shares.push_back(bin == 7 ? 0.0f : float(1 + bin % 4) / 16.0f);
     }
-    d.chunks = {local_chunk(0.0f, {}), rows_chunk(tree)};
-    return {"local_halvings", store(tree.halvings, roots, d)};
+    d.chunks = {local_chunk(cosine_share), rows_chunk(tree)};
+    d.chunks.insert(d.chunks.end(), visibility.begin(), visibility.end());
+    return {name, store(tree.halvings, roots, d)};
 }
 
 /// Maps of one tree along `axes`; the codes of the first map leave two halves dark.
@@ -362,108 +414,23 @@ Golden many_segments(const char* name, AcdfCodec codec) {
     return {name, store(encode_tree(cascade), environment_description(301, 9), codec)};
 }
 
-Description local_axes(Description d, const std::vector<AxisDescription>& normals, std::size_t bins) {
-    d.kind = ACDF_KIND_LOCAL;
-    d.total = 3.0;
-    d.axes.insert(d.axes.end(), normals.begin(), normals.end());
-    d.shares.clear();
-    for (std::size_t i = 0; i < bins; ++i) d.shares.push_back(float(1 + i % 4) / 8.0f);
-    return d;
-}
-
-/// Four visibility, told apart by position and, in the last two, by the normal's z; two of them mixed at each
-/// border. `regions`: the first and the last tell the first split of tiles apart, those between them the second.
-Chunk visibility_chunk(bool regions) {
-    Chunk chunk{ACDF_CHUNK_VISIBILITY, {}};
-    const AcdfVisibility header = {
-        3, 4, 1, regions, {-1, -2, 0}, {3, 2, 4}, {{0, 0, 1, 0.5f}, {1, 0, 0, 0}, {0, 1, 0, 0}}}; // y up, moved
-    const AcdfVisibilitySplit splits[] = {
-        {1.0f, 0.25f, 0 | ACDF_VISIBILITY_ROW << 3, 1},
-        {0.5f, 0.5f, 1 | (ACDF_VISIBILITY_ROW | 1) << 3, 2},
-        {0.25f, 0.125f, 5 | (ACDF_VISIBILITY_ROW | 2) << 3, ACDF_VISIBILITY_ROW | 3}};
-    const std::uint16_t columns[] = {0, ACDF_NO_COLUMN, ACDF_NO_COLUMN, 0}, set_of_row[] = {0, 1, 1, 0};
-    const std::uint8_t rows[] = {240, 30,  200, 200, 255, 7,
-                                 17,  100, 128, 90,  180, 44}; // mixture, light and odds of each
-    const auto add = [&](const void* data, std::size_t size) {
-        const auto* first = static_cast<const std::uint8_t*>(data);
-        chunk.bytes.insert(chunk.bytes.end(), first, first + size);
-    };
-    add(&header, sizeof header);
-    add(splits, sizeof splits);
-    add(columns, regions ? sizeof columns : sizeof columns / 2);
-    if (regions) add(set_of_row, sizeof set_of_row);
-    add(rows, sizeof rows);
-    return chunk;
-}
-
-/// Two portals that face two ways, in pieces, beside visibility_chunk. The last place samples by rows alone.
-Chunk portals_chunk() {
-    Chunk chunk{ACDF_CHUNK_PORTALS, {}};
-    const AcdfPortals header = {2, 2, 3, 2};
-    const AcdfPortal portals[] = {{{4, -1, 0.5f}, {2, 2.5f}, 0}, {{1, 4, 1}, {1.5f, 1}, 1}};
-    const AcdfPortalMap maps[] = {{{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}, 0.0078125f},
-                                  {{{-0.8f, 0.6f, 0}, {0, 0, 1}, {0.6f, 0.8f, 0}}, 0.015625f}};
-    const std::uint32_t sums[] = {0, 0, 0, 0, 0, 3, 4, 9,  0, 5, 21, 27, 0, 8, 25, 40,  // of the first map
-                                  0, 0, 0, 0, 0, 1, 9, 10, 0, 2, 12, 18, 0, 7, 19, 26}; // of the second
-    const std::uint8_t rows[] = {12,  250, 240, 200, 255, 30,  90,  180, 251,           //
-                                 99,  100, 250, 251, 252, 200, 210, 220, 230,           //
-                                 3,   255, 255, 255, 255, 17,  255, 255, 255,           //
-                                 255, 1,   2,   3,   4,   5,   6,   7,   8};
-    const auto add = [&](const void* data, std::size_t size) {
-        const auto* first = static_cast<const std::uint8_t*>(data);
-        chunk.bytes.insert(chunk.bytes.end(), first, first + size);
-    };
-    add(&header, sizeof header);
-    add(portals, sizeof portals);
-    add(maps, sizeof maps);
-    add(sums, sizeof sums);
-    add(rows, sizeof rows);
-    return chunk;
-}
-
-/// A local environment with everything that bins can share: tiles with a curve and without, one of them a light;
-/// bin 7 is not stored.
-Golden local(const char* name, AcdfParameterization parameterization, const std::vector<Chunk>& visibility = {}) {
-    const Cascade cascade = {{{kPhi, {5}, {0.375, 0.625}, {1, 2}, {}},
-                              {kTheta, {2, 6}, {0.25, 0.5, 0.25}, {}, {}},
-                              {kTheta, {3}, {0.75, 0.25}, {3, -1}, {}},
-                              {kPhi, {7, 9}, {0.5, 0.0, 0.5}, {}, {}}},
-                             {0}};
-    EncodedTree tree = encode_tree(cascade);
-    StoredRows rows;
-    rows.splits = {{kPhi | 5u << 3, {ACDF_TILE_FLAG, 1}},
-                   {kTheta | 3u << 3, {ACDF_TILE_FLAG | 1, ACDF_TILE_FLAG | 2}}};
-    rows.tile_roots = {tree.offsets[1], tree.offsets[3], ACDF_NO_ROOT};
-    for (std::uint32_t i = 0; i < 256; ++i) rows.codebook.push_back(static_cast<std::uint16_t>(257 * i));
-    rows.row_count = 5;
-    for (std::uint32_t r = 0; r < rows.row_count; ++r)
-        rows.codes.insert(rows.codes.end(), {static_cast<std::uint8_t>(20 + 40 * r), 0}); // nothing for the light
-    tree.roots.clear();
-    for (std::uint32_t bin = 0; bin < 18; ++bin) tree.roots.push_back(bin == 7 ? ACDF_NO_ROOT : bin % 5);
-    Description d = local_axes(environment_description(12, 8, parameterization),
-                               {{"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 18, 0.0, 18.0}}, 18);
-    d.chunks = shared_chunks(rows);
-    d.chunks.push_back(local_chunk(0.25f, {{{0.6f, 0.0f, 0.8f}, 0.125f, 0.5f, 1, {5, 0}, {12, 3}}}));
-    d.chunks.insert(d.chunks.end(), visibility.begin(), visibility.end());
-    return {name, store(tree, d)};
-}
-
 /// A tree for each bin of a grid of normals, some of them the same; bin 2 is not stored, bin 4 dark.
 Golden local_grid() {
     const Cascade cascade = {{{kPhi, {5}, {0.375, 0.625}, {-1, 1}, {}},
                               {kTheta, {3}, {0.75, 0.25}, {}, {}},
                               {kTheta, {1, 4}, {0.125, 0.75, 0.125}, {-1, 3, -1}, {}},
                               {kPhi, {2, 11}, {0.25, 0.5, 0.25}, {}, {}}},
-                             {0, 2}};
+                             {0, 2, 3, 1}};
     EncodedTree tree = encode_tree(cascade);
-    tree.roots = {tree.roots[1], tree.offsets[3], ACDF_NO_ROOT, 0, tree.roots[1], tree.offsets[1]};
+    tree.roots = {tree.roots[1], tree.roots[2], ACDF_NO_ROOT, 0, tree.roots[1], tree.roots[3]};
     constexpr double pi = 3.141592653589793;
-    Description d = local_axes(environment_description(12, 8),
-                               {{"normal theta", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 2, 0.0, pi},
-                                {"normal phi", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 3, pi, -pi}},
-                               6);
-    d.shares[4] = 0.0f;
-    d.chunks = {local_chunk(0.0f, {})};
+    Description d = environment_description(12, 8);
+    d.kind = ACDF_KIND_LOCAL;
+    d.total = 3.0;
+    d.axes.push_back({"normal theta", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 2, 0.0, pi});
+    d.axes.push_back({"normal phi", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 3, pi, -pi});
+    d.shares = {0.125f, 0.25f, 0.375f, 0.5f, 0.0f, 0.25f};
+    d.chunks = {local_chunk(0.0f)};
     return {"local_grid", store(tree, d)};
 }
 
@@ -547,13 +514,11 @@ int main(int argc, char** argv) try {
           leaf_halvings(),
           day(),
           frames(),
-          local("local", ACDF_PARAM_LATLONG),
-          local_halvings(),
-          local("octahedral_local", ACDF_PARAM_OCTAHEDRAL),
+          local("local", 0.0f),
           local_grid(),
-          local("visibility", ACDF_PARAM_LATLONG, {visibility_chunk(false)}),
-          local("visibility_regions", ACDF_PARAM_LATLONG, {visibility_chunk(true)}),
-          local("portals", ACDF_PARAM_LATLONG, {visibility_chunk(false), portals_chunk()}),
+          local("visibility", 0.25f, {visibility_chunk(false)}),
+          local("visibility_regions", 0.25f, {visibility_chunk(true)}),
+          local("portals", 0.25f, {visibility_chunk(false), portals_chunk()}),
           brdf("brdf", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, 0, 0.0f),
           brdf("brdf_mirrored", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, ACDF_VIEWS_MIRRORED, 0.0f),
           brdf("brdf_anisotropic", {0.125f, 0.5f, 0.875f}, 4, 0, 0.0f),

@@ -33,10 +33,9 @@ make_files() {
     mkdir -p "$out"
     for codec in none zlib; do
         "$acdf" env "$work/sky.hdr" -o "$out/env_$codec.acdf" --cells 500 --compress $codec "${common[@]}"
-        "$acdf" local "$work/sky.hdr" -o "$out/local_$codec.acdf" --budget 16KiB --shape small --compress $codec "${common[@]}"
+        "$acdf" local "$work/sky.hdr" -o "$out/local_$codec.acdf" --budget 16KiB --compress $codec "${common[@]}"
         "$acdf" table "$work/table.npy" --indexed 1 -o "$out/table_$codec.acdf" --cells 40 --compress $codec "${common[@]}"
     done
-    "$acdf" local "$work/sky.hdr" -o "$out/local_halvings.acdf" --budget 24KiB "${common[@]}"
     "$acdf" brdf ggx:alpha=0.2 -o "$out/brdf.acdf" --budget 12KiB --views 6 "${common[@]}"
     for fit in cdf pdf uniform; do
         "$acdf" env "$work/sky.hdr" -o "$out/env_$fit.acdf" --fit $fit --knots 12x12 "${common[@]}"

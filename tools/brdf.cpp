@@ -173,7 +173,7 @@ void BrdfConversion::add_fit_options(CLI::App& command) {
 
 void BrdfConversion::add_size_options(CLI::App& command) {
     add_goal(command, brdf_.goal.cells, budget_, brdf_.goal.variance,
-             {"Cells of each view", "N", "SIZE [128KiB]", ", about, as mean over views", 1, ACDF_MAX_TILES});
+             {"Cells of each view", "N", "SIZE [128KiB]", ", about, as mean over views", 1, builder::max_tiles});
     add_max_weight(
         command, brdf_.max_weight,
         ". It is measured over the views whose variance is printed; without it, weights are held to about "

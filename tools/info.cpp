@@ -1,4 +1,5 @@
 // acdf info: what is inside a file, in a form for people or as JSON.
+#include "build/accuracy/cells.h"
 #include "build/text/format_names.h"
 #include "build/text/partner.h"
 #include "measure/samplers/light_samplers.h"
@@ -81,11 +82,6 @@ TreeCounts count_tree(const File& file) {
             (file.kind() == ACDF_KIND_BRDF ? file.brdf().data().halved : file.local().environment().data().halved)
                 ->count +
             std::uint64_t{1};
-        return counts;
-    }
-    if (const AcdfTiles* tiles = file.blend().tiles; tiles && tiles->root_count == 0) {
-        counts.cells = tiles->tile_count; // shared by all bins, and no curve divides them
-        counts.curves = 0;
         return counts;
     }
     for (std::uint32_t at = 0; at < file.tree_units();) {
@@ -176,11 +172,8 @@ Json local_json(const File& file) {
                                                : std::to_string(local.columns) + "x" + std::to_string(local.rows);
     report["bins_stored"] = stored;
     const AcdfNormalRows* const rows = local.rows_of_normals;
-    const AcdfTiles* const tiles = local.blend.tiles;
-    report["tiles"] = rows ? rows->splits + 1 : tiles ? tiles->tile_count : 0;
-    report["shape"] = rows ? "halvings" : tiles ? "small" : "separate";
-    report["rows"] = rows ? rows->rows : tiles ? tiles->row_count : 0;
-    report["bright_tiles"] = local.bright_tile_count;
+    report["tiles"] = rows ? rows->splits + 1 : 0;
+    report["rows"] = rows ? rows->rows : 0;
     report["cosine_share"] = local.cosine_share;
     if (const AcdfVisibility* visibility = local.visibility.header)
         report["visibility"] = {{"cells", visibility->split_count + 1},
@@ -293,11 +286,9 @@ std::string target_text(const Json& report) {
 std::string local_text(const Json& local) {
     const std::string bins =
         "--normals " + text_of(local["normals"]) + ", " + text_of(local["bins_stored"]) + " stored; ";
-    const std::string shared = local["tiles"] == 0
-                                   ? "a tree each"
-                                   : text_of(local["tiles"]) + " tiles shared by " + text_of(local["rows"]) +
-                                         " rows, " + text_of(local["bright_tiles"]) + " bright tiles" +
-                                         (local.contains("shape") ? "; shape " + text_of(local["shape"]) : "");
+    const std::string shared =
+        local["tiles"] == 0 ? "a tree each"
+                            : text_of(local["tiles"]) + " tiles shared by " + text_of(local["rows"]) + " rows";
     const std::string visibility = local.contains("visibility")
                                        ? "; " + text_of(local["visibility"]["cells"]) + " visibility cells from " +
                                              text_of(local["visibility"]["low"]) + " to " +

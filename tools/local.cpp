@@ -63,7 +63,6 @@ private:
     builder::LocalOptions read_scene(const Note& note) const;
     void add_bins(CLI::App& command);
     void add_size(CLI::App& command);
-    void add_shape(CLI::App& command);
     void add_separate(CLI::App& command);
     nlohmann::ordered_json report(const ProbeTarget& loaded, const builder::Local& result) const;
     std::string scene_text() const;
@@ -144,10 +143,6 @@ void LocalConversion::check() {
             throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
     if (portals_.given() && !visibility_) throw CLI::ValidationError("--portal", "is for --visibility");
     if (volume_ && !visibility_) throw CLI::ValidationError("--volume", "is for --visibility");
-    if (local_.shape == builder::LocalShape::halvings)
-        for (const char* option : {"--no-sharing", "--visibility"})
-            if (given(option))
-                throw CLI::ValidationError("--shape", std::string("halvings goes without ") + option);
     if (!visibility_) return;
     if (!scene_.given()) throw CLI::ValidationError("--visibility", "needs --scene MESH");
     for (const char* option : {"--cells", "--target-variance", "--max-weight"})
@@ -196,10 +191,6 @@ double gain(const builder::Local& result) {
     return result.accuracy.relative_variance_full_cdf / result.accuracy.relative_variance;
 }
 
-const char* shape_name(builder::LocalShape shape) {
-    return shape == builder::LocalShape::halvings ? "halvings" : "small";
-}
-
 nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const builder::Local& result) const {
     const builder::LocalAccuracy& a = result.accuracy;
     File file;
@@ -211,11 +202,8 @@ nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const 
         {"resolution", {loaded.probe.width, loaded.probe.height}},
         {"bytes", result.bytes.size()},
         {"bins", file.description().bin_count},
-        {"tiles", rows                 ? rows->splits + 1
-                  : file.blend().tiles ? file.blend().tiles->tile_count
-                                       : 0},
+        {"tiles", rows ? rows->splits + 1 : 0},
         {"visibility", file.local().has_visibility() ? file.local().data().visibility.header->row_count : 0},
-        {"shape", shape_name(result.shape)},
         {"normals", result.normals},
         {"relative_variance", a.relative_variance},
         {"relative_variance_full_cdf", a.relative_variance_full_cdf},
@@ -240,11 +228,8 @@ std::string summary_of(const builder::Local& result) {
         return text;
     }
     std::snprintf(text, sizeof text,
-                  "%srelative variance %.4g over %u normals: %.3g times less than the probe's own CDF (%.4g); "
+                  "relative variance %.4g over %u normals: %.3g times less than the probe's own CDF (%.4g); "
                   "%.1f %% of samples above the horizon",
-                  result.shape == builder::LocalShape::halvings
-                      ? ""
-                      : (std::string(shape_name(result.shape)) + " shape, ").c_str(),
                   a.relative_variance, a.lit_normals, gain(result), a.relative_variance_full_cdf,
                   100.0 * a.share_above_horizon);
     return text;
@@ -360,23 +345,10 @@ void LocalConversion::add_size(CLI::App& command) {
     command
         .add_option(
             "--tiles", local.tiles,
-            "Tiles whose probability each bin stores, a byte each: more of them and the cosine is followed more "
-            "closely, at the price of cells within them")
-        ->check(CLI::Range(1u, ACDF_MAX_TILES))
+            "Tiles whose probability each bin stores: more of them and the cosine is followed more closely, at the "
+            "price of cells within them")
+        ->check(CLI::Range(1u, builder::max_tiles))
         ->option_text("N [as suits the size]")
-        ->group("Size and accuracy");
-}
-
-void LocalConversion::add_shape(CLI::App& command) {
-    using Shape = builder::LocalShape;
-    constexpr Named<Shape> shapes[] = {
-        {"halvings", Shape::halvings}, {"small", Shape::small}, {"auto", Shape::automatic}};
-    add_choice(
-        command, "--shape", local_.shape, shapes,
-        "halvings: one tree, with a row of codes for each normal: the least noise for its bytes; small: curves in "
-        "tiles, for --visibility, --max-weight and other MIS partners than the cosine; auto: halvings, or small "
-        "where options ask for what that has not")
-        ->option_text("halvings|small|auto [auto]")
         ->group("Size and accuracy");
 }
 
@@ -421,7 +393,6 @@ void LocalConversion::add_options(CLI::App& command) {
     add_repairs(command, input_);
     add_bins(command);
     add_size(command);
-    add_shape(command);
     add_partner(command, local_.mis, ACDF_KIND_LOCAL);
     add_separate(command);
     add_target_options(command, local_.target);

@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 using measure::KnotGain;
 using measure::Scanline;
 
-constexpr AcdfFit kAdaptive[] = {ACDF_FIT_CDF, ACDF_FIT_PDF, ACDF_FIT_VARIANCE};
+constexpr AcdfFit kAdaptive[] = {ACDF_FIT_CDF, ACDF_FIT_PDF};
 
 struct ScanlineArguments {
     std::string probe, row = "auto-peaky";
@@ -176,7 +176,7 @@ void add_scanline(CLI::App& program, int& exit_code) {
     command->footer(help_footer(
         "The study of Lawrence et al. 2005, Fig. 6. The fits approximate the pdf of the row over its columns. The "
         "error is that of the stored pdf, as a share of the mean pdf. With S segments a curve has S + 1 knots. The "
-        "fit `pdf` is linear on each segment and stores a slope too; `variance` minimises noise, not this error.",
+        "fit `pdf` is linear on each segment and stores a slope too.",
         "acdf scanline sky.exr --row auto-smooth\n"
         "acdf scanline grace_probe.hdr --projection angular --row 300\n"
         "acdf scanline sky.exr --json | jq .factor.cdf.median\n"

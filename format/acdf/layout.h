@@ -84,8 +84,6 @@ typedef enum AcdfHeuristic {
 #define ACDF_CHUNK_BINS ACDF_FOURCC('B', 'I', 'N', 'S')
 #define ACDF_CHUNK_TREE ACDF_FOURCC('T', 'R', 'E', 'E')
 #define ACDF_CHUNK_METADATA ACDF_FOURCC('M', 'E', 'T', 'A')
-#define ACDF_CHUNK_TILES ACDF_FOURCC('T', 'I', 'L', 'E')
-#define ACDF_CHUNK_ROWS ACDF_FOURCC('R', 'O', 'W', 'S')
 #define ACDF_CHUNK_LOCAL ACDF_FOURCC('L', 'O', 'C', 'L')
 #define ACDF_CHUNK_PARTNER ACDF_FOURCC('C', 'O', 'M', 'P')
 #define ACDF_CHUNK_VIEWS ACDF_FOURCC('V', 'I', 'E', 'W')
@@ -191,8 +189,8 @@ typedef struct AcdfMapsHeader {
 #define ACDF_MOST_SUN 4u
 #define ACDF_MOST_INDEXED_AXES 3u
 
-/* Chunk NORM of a local environment or a BRDF, beside HALV and BINS and instead of TREE, TILE and ROWS (SPEC.md
- * §10.6 and §11): this, then a bit for each halving, 1 where each row has a code of its own, then row by row the
+/* Chunk NORM of a local environment or a BRDF, beside HALV and BINS and instead of TREE (SPEC.md
+ * §9 and §11): this, then a bit for each halving, 1 where each row has a code of its own, then row by row the
  * codes of these halvings, but for those that the row leads no random numbers to. Runs of bits as in HALV. */
 typedef struct AcdfNormalsHeader {
     uint32_t row_count;
@@ -232,40 +230,11 @@ typedef struct AcdfPlanes {
     uint32_t count[ACDF_PLANE_STREAMS]; /* of values in each stream */
 } AcdfPlanes;
 
-/* Chunk TILE: what bins share (SPEC.md §9): this, then tiles - 1 splits, then `root_count` (0 or `tiles`) uint32
- * offsets in TREE, in units, of the tree within each tile; ACDF_NO_ROOT where a tile is a cell. */
-typedef struct AcdfTiles {
-    uint32_t tile_count;    /* 1 to ACDF_MAX_TILES */
-    uint32_t root_count;    /* 0: every tile is a cell */
-    uint32_t row_count;     /* rows of chunk ROWS */
-    uint32_t reserved;      /* 0 */
-    uint16_t codebook[256]; /* strictly increasing from 0 to 65535 */
-} AcdfTiles;
-
-/* A split of a box in two. Splits stand in preorder: the lower child, if a split, follows at once. */
-typedef struct AcdfSplit {
-    uint32_t place;    /* bits 0-2: axis; bits 3-31: position, strictly inside the box */
-    uint16_t child[2]; /* lower and upper part: a later split, or ACDF_TILE_FLAG | number of a tile */
-} AcdfSplit;
-
-/* Chunk ROWS: row_count rows of tile_count - 1 bytes: codebook[code] / 65535 is the probability of a split's lower
- * part. */
-
-/* Chunk LOCL, of local environments: this, then its bright tiles. */
+/* Chunk LOCL, of local environments. */
 typedef struct AcdfLocalHeader {
     float cosine_share; /* in [0, 1): of samples taken around the normal with density cos / pi */
-    uint32_t bright_tile_count;
+    uint32_t reserved;  /* 0 */
 } AcdfLocalHeader;
-
-/* A tile so small and bright that its weight is worked out for each normal (SPEC.md §10.1). */
-typedef struct AcdfBrightTile {
-    float direction[3]; /* unit, to its middle */
-    float radius;       /* no point of it is farther from `direction`, > 0 */
-    float share;        /* of `total`, > 0 */
-    uint32_t tile;      /* its number; ascending */
-    uint32_t low[2];    /* its box: positions on the axes 0 and 1 */
-    uint32_t high[2];
-} AcdfBrightTile;
 #endif
 
 /* Chunk COMP of a file that is not to be used alone: this, then `record_count` records (0, or one a bin). */
@@ -349,11 +318,7 @@ typedef struct AcdfPortalMap {
 #define ACDF_MAX_PORTAL_CELLS 4096u
 #define ACDF_MAX_PORTAL_PIECES 4u
 
-#define ACDF_NO_ROOT 0xFFFFFFFFu /* of a tile: it is a cell; of a bin: it is not stored */
-#define ACDF_TILE_FLAG 0x8000u
-#define ACDF_MAX_TILES 32768u
-#define ACDF_MAX_SPLITS_DEEP 48u /* on a path, so that no product of weights underflows */
-#define ACDF_MAX_BRIGHT_TILES 64u
+#define ACDF_NO_ROOT 0xFFFFFFFFu /* of a bin: it is not stored */
 
 /* Chunk VIEW of a BRDF (SPEC.md §11): this, then `theta_count` f32, sqrt(1 - cos(theta_o)) of the stored views. */
 typedef struct AcdfViews {
@@ -390,10 +355,7 @@ ACDF_STATIC_ASSERT(sizeof(AcdfMapsHeader) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfNormalsHeader) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfMap) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfPlanes) == 44);
-ACDF_STATIC_ASSERT(sizeof(AcdfTiles) == 528);
-ACDF_STATIC_ASSERT(sizeof(AcdfSplit) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalHeader) == 8);
-ACDF_STATIC_ASSERT(sizeof(AcdfBrightTile) == 40);
 ACDF_STATIC_ASSERT(sizeof(AcdfViews) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfVisibility) == 88);
 ACDF_STATIC_ASSERT(sizeof(AcdfVisibilitySplit) == 16);

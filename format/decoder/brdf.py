@@ -51,11 +51,11 @@ class Place:
 
 
 class Brdf:
-    def __init__(self, tree, d, tiles, chunk):
-        self.mirrored, self.sigma, self.nodes = read_views(chunk, d, tiles is not None)
-        self.tree, self.tiles, self.bins, self.total = tree, tiles, d.bins, d.total
+    def __init__(self, tree, d, rows, chunk):
+        self.mirrored, self.sigma, self.nodes = read_views(chunk, d, rows is not None)
+        self.tree, self.rows_of_views, self.bins, self.total = tree, rows, d.bins, d.total
         self.W, self.H = d.axes[0].resolution, d.axes[1].resolution
-        if tiles is not None:
+        if rows is not None:
             self.H, self.begins = STEPS, [begin_of_row(i) for i in range(ROWS + 1)]
         self.F = d.axes[3].resolution
 
@@ -84,7 +84,7 @@ class Brdf:
             return None
         out, rows = View(), self.rows(wo)
         out.wo = wo
-        if self.tiles is not None:
+        if self.rows_of_views is not None:
             mixture = [(self.bins[b][0], weight * self.bins[b][1]) for b, weight in rows]
             out.mixture = [(row, weight) for row, weight in mixture if weight > 0]
         else:
@@ -135,16 +135,16 @@ class Brdf:
             return 0.0
         box, s = self.whole()
         square = [min(math.floor(place.X), self.W - 1), min(math.floor(place.Y), self.H - 1)]
-        if self.tiles is not None:
+        if self.rows_of_views is not None:
             square[1] = bisect.bisect_right(self.begins, place.Y, 0, ROWS) - 1
         if view.mixture is None:
             p = self.tree.find(view.tree, square, box, s)
         elif not view.mixture:
             p = 0.0
         else:
-            tile, p = self.tiles.find(view.mixture, square)
+            tile, p = self.rows_of_views.find(view.mixture, square)
             if p > 0:
-                p = self.tiles.find_within(self.tree, tile, p, square, box, s)
+                p = self.rows_of_views.find_within(self.tree, tile, p, square, box, s)
                 box[1] = [self.begins[row] for row in box[1]]
         return self.density(place, p, box, s)
 
@@ -170,8 +170,8 @@ class Brdf:
             sign, u[0] = -1.0 if v < 0 else 1.0, abs(v)
         box, s = self.whole()
         if view.mixture is not None:  # step 5
-            tile, p = self.tiles.draw(view.mixture, u)
-            p = self.tiles.sample_within(self.tree, tile, p, u, box, s)
+            tile, p = self.rows_of_views.draw(view.mixture, u)
+            p = self.rows_of_views.sample_within(self.tree, tile, p, u, box, s)
             box[1] = [self.begins[row] for row in box[1]]
         else:
             p = self.tree.draw(view.tree, u, box, s)

@@ -11,7 +11,6 @@ from .refused import require
 from .sphere import Environment
 from .square import grid_of
 from .table import Table
-from .tiles import Tiles
 from .tree import Tree, check_tree
 
 
@@ -25,7 +24,7 @@ def view_of(container, d):
 def sampler_of(container, d):
     chunks, kind = container.payloads, container.kind
     if b"HALV" in chunks:
-        require(b"TREE" not in chunks and b"TILE" not in chunks and d.fit == 4, 6035)
+        require(b"TREE" not in chunks and d.fit == 4, 6035)
         require(b"BINS" not in chunks or kind in (LOCAL, BRDF, TABLE), 6035)
         if kind == TABLE:
             return Table(chunks[b"HALV"], d.axes, d.bins)
@@ -37,40 +36,26 @@ def sampler_of(container, d):
             tree = Halvings(chunks[b"HALV"], [axis.resolution for axis in d.axes if axis.role == 0])
             rows = NormalRows(tree, chunks[b"NORM"], d.bin_count)
             require(all(root < rows.row_count or root == NOT_STORED for root, _ in d.bins), 6026)
-            return Local(tree, d, rows, chunks.get(b"LOCL")) if kind == LOCAL else Brdf(tree, d, rows, chunks.get(b"VIEW"))
+            return local_of(chunks, tree, d, rows) if kind == LOCAL else Brdf(tree, d, rows, chunks.get(b"VIEW"))
         return Environment(Halvings(chunks[b"HALV"], [axis.resolution for axis in d.axes]), None, grid_of(d))
-    tiles = None
-    if b"TILE" in chunks:
-        require(len(d.axes) >= 2, 7003)
-        tiles = Tiles(chunks[b"TILE"], chunks.get(b"ROWS"), d.axes)
-    else:
-        require(b"ROWS" not in chunks, 6025)
     tree = Tree(chunks[b"TREE"])
-    check_tree(tree, d.axes, roots_of(kind, d, tiles, tree))
+    check_tree(tree, d.axes, roots_of(kind, d, tree))
     if kind == ENVIRONMENT:
         return Environment(tree, d.bins[0][0], grid_of(d))
-    if kind == LOCAL:
-        return Local(tree, d, tiles, chunks.get(b"LOCL"), chunks.get(b"PLAC"),
-                     chunks.get(b"PORT"))
-    return Brdf(tree, d, None, chunks.get(b"VIEW"))
+    return local_of(chunks, tree, d, None) if kind == LOCAL else Brdf(tree, d, None, chunks.get(b"VIEW"))
 
 
-def roots_of(kind, d, tiles, tree):
+def local_of(chunks, tree, d, rows):
+    return Local(tree, d, rows, chunks.get(b"LOCL"), chunks.get(b"PLAC"), chunks.get(b"PORT"))
+
+
+def roots_of(kind, d, tree):
     """§7.2: where paths begin, each with the box by axis that is inherited there."""
     whole = [[0, axis.resolution] for axis in d.axes]
-    roots = []
-    if kind == LOCAL:
-        roots.append((0, whole))
-    if tiles is None:
-        for root, _ in d.bins:
-            if root == NOT_STORED and kind in (LOCAL, BRDF):
-                continue
-            require(root in tree.curves, 6010)
-            roots.append((root, whole))
-        return roots
+    roots = [(0, whole)] if kind == LOCAL else []
     for root, _ in d.bins:
-        require(root < tiles.row_count or root == NOT_STORED, 6026)
-    for root, box in tiles.trees():
-        require(root in tree.curves, 6024)
-        roots.append((root, [*box, *whole[2:]]))
+        if root == NOT_STORED and kind in (LOCAL, BRDF):
+            continue
+        require(root in tree.curves, 6010)
+        roots.append((root, whole))
     return roots

@@ -9,33 +9,14 @@ from .sphere import (NOTHING, Environment, Sphere, clamp, direction_of, f32, of_
 from .visibility import Visibility
 from .portals import Portals
 from .square import grid_of
-from .tiles import sum_of
-from .tree import LEAST
 
 
-class Light:
-    def __init__(self, data):
-        *self.direction, self.radius, self.share, self.tile, x0, y0, x1, y1 = struct.unpack("<5f5I", data)
-        self.box = [[x0, x1], [y0, y1]]
-
-
-def read_local_chunk(data, tiles, bins):
-    """§10.1. Returns the cosine's share and the bright tiles."""
-    require(data is not None and len(data) >= 8, 7005)
-    sigma, count = struct.unpack_from("<fI", data)
-    require(count <= 64 and len(data) == 8 + 40 * count, 7005)
-    require(0 <= sigma < 1, 7005)
-    bright_tiles = [Light(data[8 + 40 * k:48 + 40 * k]) for k in range(count)]
-    for k, light in enumerate(bright_tiles):
-        square = sum_of([x * x for x in light.direction])
-        require(hasattr(tiles, "boxes") and light.tile < tiles.count, 7006)
-        require(k == 0 or light.tile > bright_tiles[k - 1].tile, 7006)
-        require(abs(square - 1) < 0.001 and 0 < light.radius <= 2, 7006)
-        require(0 < light.share < math.inf and light.box == tiles.boxes[light.tile], 7006)
-        for root, share in bins:
-            if root != NOT_STORED and share > 0:
-                require(tiles.is_dark(root, light.tile), 7007)
-    return sigma, bright_tiles
+def read_local_chunk(data):
+    """§10.1: the cosine's share."""
+    require(data is not None and len(data) == 8, 7005)
+    sigma, reserved = struct.unpack("<fI", data)
+    require(0 <= sigma < 1 and reserved == 0, 7005)
+    return sigma
 
 
 def read_normals(axes, bin_count):
@@ -91,7 +72,7 @@ def octahedral_bins(N, n):
 
 
 class Point:
-    """What a normal samples from: `tree` (a root), or `mixture` and `bright tiles` (weights), or nothing."""
+    """What a normal samples from: `tree` (a root), or `mixture` (pairs of a row and its weight), or nothing."""
 
     tree = mixture = None
     cells = ()  # of its position
@@ -99,14 +80,14 @@ class Point:
 
 
 class Local:
-    def __init__(self, tree, d, tiles, chunk, visibility=None, portals=None):
+    def __init__(self, tree, d, rows, chunk, visibility=None, portals=None):
         check_sphere_axes(d)
         self.N, self.grid = read_normals(d.axes, d.bin_count)
-        self.sigma, self.bright_tiles = read_local_chunk(chunk, tiles, d.bins)
-        self.tree, self.tiles, self.bins = tree, tiles, d.bins
+        self.sigma = read_local_chunk(chunk)
+        self.tree, self.rows, self.bins = tree, rows, d.bins
         self.environment = Environment(tree, 0, grid_of(d))
         self.sphere = self.environment.sphere
-        self.visibility = None if visibility is None else Visibility(visibility, tiles if hasattr(tiles, "before") else None)
+        self.visibility = None if visibility is None else Visibility(visibility, rows)
         self.portals = None if portals is None else Portals(portals, self.visibility)
 
     def point(self, normal, position=None):
@@ -115,7 +96,7 @@ class Local:
             return out
         out.n = n
         served = octahedral_bins(self.N, n) if self.N else [(self.grid_bin(n), 1.0)]
-        if self.tiles is None:
+        if self.rows is None:
             nearest = max(served, key=lambda pair: pair[1])[0]  # the first of equal ones
             root, share = self.bins[nearest]
             out.tree = 0 if root == NOT_STORED else root if share > 0 else None
@@ -124,7 +105,7 @@ class Local:
             out.tree = 0
             return out
         mixture = [(self.bins[b][0], m * self.bins[b][1]) for b, m in served]
-        self.weigh(out, [(row, w) for row, w in mixture if w > 0])
+        out.mixture = [(row, w) for row, w in mixture if w > 0] or None
         if position is not None and self.visibility is not None and out.mixture is not None:
             out.cells = self.visibility.cells(position, n)
             if self.portals is not None and out.cells:
@@ -135,51 +116,17 @@ class Local:
         column, row = self.grid.grid(n)[1]
         return row * self.grid.W + column
 
-    def weigh(self, out, mixture):
-        n = out.n
-        length = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
-        factor = self.N / (abs(n[0]) + abs(n[1]) + abs(n[2])) if self.N else 1 / length
-        scaled = [factor * x for x in n]
-        weights = []
-        for light in self.bright_tiles:
-            h = sum_of([x * d for x, d in zip(scaled, light.direction)])
-            reach = light.radius * (factor * length)
-            weights.append(light.share * h if h >= reach else 0.0 if h <= -reach else
-                           light.share * ((h + reach) * (h + reach) / (4 * reach)))
-        out.light_sum, out.row_sum = sum_of(weights), sum_of([w for _, w in mixture])
-        out.S = out.light_sum + out.row_sum
-        if out.S > 0:
-            out.mixture, out.weights = mixture, weights
-
     def draw(self, point, u, box, s):
-        """Sampling from bright tiles and mixture."""
-        x = u[0] * point.S
-        if x < point.light_sum or not point.mixture:
-            shining = [k for k, w in enumerate(point.weights) if w > 0]
-            k = shining.pop(0)
-            while x >= point.weights[k] and shining:
-                x, k = x - point.weights[k], shining.pop(0)
-            u[0] = clamp(x / point.weights[k], 0, 1)
-            p = max(point.weights[k] / point.S, LEAST)
-            return self.tiles.sample_within(self.tree, self.bright_tiles[k].tile, p, u, box, s)
-        u[0] = clamp((x - point.light_sum) / (point.S - point.light_sum), 0, 1)
-        tile, q = (self.visibility.draw(point.mixture, point.cells, u) if point.cells else
-                   self.tiles.draw(point.mixture, u))
-        p = max(point.row_sum / point.S * q, LEAST)
-        return self.tiles.sample_within(self.tree, tile, p, u, box, s)
+        """Sampling from a mixture."""
+        tile, p = (self.visibility.draw(point.mixture, point.cells, u) if point.cells else
+                   self.rows.draw(point.mixture, u))
+        return self.rows.sample_within(self.tree, tile, p, u, box, s)
 
     def find(self, point, square, box, s):
         """The cell of a direction."""
-        tile, q = (self.visibility.find(point.mixture, point.cells, square) if point.cells else
-                   self.tiles.find(point.mixture, square))
-        if q > 0:
-            p = max(point.row_sum / point.S * q, LEAST)
-        else:
-            weight = sum_of([w for w, light in zip(point.weights, self.bright_tiles) if light.tile == tile])
-            if not weight > 0:
-                return 0.0
-            p = max(weight / point.S, LEAST)
-        return self.tiles.find_within(self.tree, tile, p, square, box, s)
+        tile, p = (self.visibility.find(point.mixture, point.cells, square) if point.cells else
+                   self.rows.find(point.mixture, square))
+        return self.rows.find_within(self.tree, tile, p, square, box, s)
 
     def light_pdf(self, point, v):
         """p_L: of rows, and of visible_portals where the position sees any."""

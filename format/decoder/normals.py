@@ -1,4 +1,4 @@
-"""SPEC.md §10.6: rows of normals or views at the top of a tree of halvings. What Tiles is to trees of curves."""
+"""SPEC.md §9: rows of normals or views at the top of a tree of halvings. What Tiles is to trees of curves."""
 import math
 import struct
 
@@ -62,7 +62,7 @@ class NormalRows:
             node, top = waiting.pop()
             node.is_split = False
             if node.halves:
-                node.is_split, node.split = bits.take(1) == 1, found
+                node.is_split = bits.take(1) == 1
                 require(top or not node.is_split, 6037)
                 found += node.is_split
                 waiting += [(half, node.is_split) for half in reversed(node.halves)]
@@ -109,12 +109,6 @@ class NormalRows:
         node, first = [group for group in self.groups if M(group[1]) <= at][-1]
         c = M(first + self.tiles_below(node)) - M(first)
         u[0] = clamp((x - M(first)) / c, 0, 1)
-        tile, c = self.draw_below(M, node, first, u)
-        return tile, c / 2.0**52
-
-    def draw_below(self, M, node, first, u):
-        """By u[1]: a tile below a node whose first one is `first`, and its c."""
-        c = M(first + self.tiles_below(node)) - M(first)
         x = u[1] * float(c)
         m = min(math.floor(x), c - 1)
         while node.is_split:
@@ -126,7 +120,7 @@ class NormalRows:
             node = node.halves[is_upper]
         c = M(first + 1) - M(first)
         u[1] = clamp(x / c, 0, 1)
-        return first, c
+        return first, c / 2.0**52
 
     def tile_of(self, square):
         node = self.tree.root

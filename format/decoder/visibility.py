@@ -5,16 +5,21 @@ import struct
 from .halvings import share
 from .refused import require
 from .sphere import clamp, direction_of
-from .tiles import sum_of
 from .tree import LEAST
 
-ROW, NO_COLUMN = 1 << 28, 0xFFFF
+ROW, UNSEEN = 1 << 28, 2.0**-6
 
 
 class Split:
     def __init__(self, data):
         self.position, self.blend, lower, upper = struct.unpack("<ffII", data)
         self.axis, self.part = lower & 7, (lower >> 3, upper)
+
+
+class Column:
+    def __init__(self, data):
+        self.tile, parts = struct.unpack("<HH", data)
+        self.upper, self.is_lower_parted = parts & 0x7FFF, not parts & 0x8000
 
 
 class Row:
@@ -26,11 +31,12 @@ class Visibility:
     def __init__(self, data, rows):
         require(rows is not None and len(data) >= 88, 7009)
         split_count, row_count, column_count, further = struct.unpack_from("<4I", data)
-        of_top, width = rows.count - 1, 1 + column_count
-        require(1 <= row_count < ROW and split_count < ROW and column_count <= of_top and further < 65536, 7009)
+        width, set_bytes = 1 + column_count, 4 * column_count
+        require(1 <= row_count < ROW and split_count < ROW and further < 65536, 7009)
+        require(column_count <= rows.count - 1 and column_count < 1 << 15, 7009)
         at = 88 + 16 * split_count
-        sets = 2 * row_count if further else 0
-        require(len(data) == at + 2 * (1 + further) * of_top + sets + row_count * width, 7009)
+        names = 2 * row_count if further else 0
+        require(len(data) == at + set_bytes * (1 + further) + names + row_count * width, 7009)
         numbers = struct.unpack_from("<18f", data, 16)
         self.low, self.high, self.transform = numbers[:3], numbers[3:6], numbers[6:]
         require(all(math.isfinite(x) for x in numbers), 7010)
@@ -39,16 +45,34 @@ class Visibility:
         self.check_walk(row_count)
         for split in self.splits:
             require(split.axis < 6 and math.isfinite(split.position) and 0 <= split.blend < math.inf, 7012)
-        columns = [struct.unpack_from(f"<{of_top}H", data, at + 2 * of_top * s) for s in range(1 + further)]
-        require(all([c for c in s if c != NO_COLUMN] == list(range(column_count)) for s in columns), 7013)
-        at += 2 * (1 + further) * of_top
+        sets = []
+        for _ in range(1 + further):
+            sets.append([Column(data[at + 4 * k:at + 4 * k + 4]) for k in range(column_count)])
+            require(self.are_columns(sets[-1], rows.count), 7013)
+            at += set_bytes
         set_of_row = struct.unpack_from(f"<{row_count}H", data, at) if further else [0] * row_count
         require(max(set_of_row) <= further, 7015)
-        at += sets
+        at += names
         codes = [data[at + width * r:at + width * (r + 1)] for r in range(row_count)]
         require(all(0 < code < 255 for row in codes for code in row[1:]), 7014)
-        self.rows = [Row(row, columns[s]) for row, s in zip(codes, set_of_row)]
+        self.rows = [Row(row, sets[s]) for row, s in zip(codes, set_of_row)]
         self.tiles = rows
+
+    @staticmethod
+    def are_columns(columns, tiles):
+        waiting, due = [(0, 0, tiles, 1)] if columns else [], 0
+        while waiting:
+            number, first, end, depth = waiting.pop()
+            if number != due or due == len(columns) or depth > 64:
+                return False
+            column, due = columns[due], due + 1
+            if not first < column.tile < end:
+                return False
+            if column.upper:
+                waiting.append((column.upper, column.tile, end, depth + 1))
+            if column.is_lower_parted:
+                waiting.append((due, first, column.tile, depth + 1))
+        return due == len(columns)
 
     def first(self):
         return 0 if self.splits else ROW
@@ -95,59 +119,56 @@ class Visibility:
             i += 1
         return [(self.rows[node & ~ROW], weight) for node, weight in found]
 
-    @staticmethod
-    def visibility(cells):
-        return sum_of([w * ((16 + row.codes[0] % 16) * 2.0**(row.codes[0] // 16 - 20)) for row, w in cells])
-
-    @staticmethod
-    def odds(cells, split):
-        """None where no cell has a column."""
-        columns = [row.columns[split] for row, _ in cells]
-        if all(column == NO_COLUMN for column in columns):
-            return None
-        return sum_of([weight * (share(row.codes[1 + column], 8) / 2.0**31 if column != NO_COLUMN else 0.5)
-                       for column, (row, weight) in zip(columns, cells)])
-
-    def descend(self, mixture, cells, choose):
-        """To the last node with odds: it, its first tile and q. choose(node, low, high): whether to the upper half."""
-        M, node, q = self.tiles.mixed(mixture), self.tiles.tree.root, 1.0
-        first, end = 0, self.tiles.count
-        while node.is_split:
-            odds = self.odds(cells, node.split)
-            if odds is None:
-                break
-            middle = self.tiles.first_tile(node.halves[1])
-            lower, mass = M(middle) - M(first), M(end) - M(first)
-            part = [lower * odds, (mass - lower) * (1 - odds)]
-            upper = choose(node, *part)
+    def descend(self, M, row, choose):
+        """In one cell, to tiles [first, end) that no column parts: these and q. choose(column, lo, hi): the side."""
+        first, end, q, number = 0, self.tiles.count, 1.0, 0 if row.columns else None
+        while number is not None:
+            column, odds = row.columns[number], share(row.codes[1 + number], 8) / 2.0**31
+            lower = M(column.tile) - M(first)
+            part = [lower * odds, (M(end) - M(first) - lower) * (1 - odds)]
+            upper = choose(column, *part)
             if not part[upper] > 0:
-                return node, first, 0.0
+                return first, end, 0.0
             q = q * (part[upper] / (part[0] + part[1]))
-            first, end = (middle, end) if upper else (first, middle)
-            node = node.halves[upper]
-        return node, first, q
+            if upper:
+                first, number = column.tile, column.upper or None
+            else:
+                end, number = column.tile, number + 1 if column.is_lower_parted else None
+        return first, end, q
+
+    def q(self, M, cells, tile):
+        s = 0.0
+        for row, weight in cells:
+            first, end, q = self.descend(M, row, lambda column, lo, hi: int(tile >= column.tile))
+            s += weight * (q * ((M(tile + 1) - M(tile)) / (M(end) - M(first))) if q > 0 else 0.0)
+        s = (1 - UNSEEN) * s + UNSEEN * ((M(tile + 1) - M(tile)) / 2.0**52)
+        return max(s, LEAST) if s > 0 else 0.0
 
     def draw(self, mixture, cells, u):
         """Changes u; returns the tile and its q."""
-        def choose(node, low, high):
-            x = u[node.axis] * (low + high)
-            upper = int(x >= low and high > 0)
-            u[node.axis] = clamp((x - low) / high if upper else x / low, 0, 1)
+        def choose(column, lo, hi):
+            x = u[0] * (lo + hi)
+            upper = int(x >= lo and hi > 0)
+            u[0] = clamp((x - lo) / hi if upper else x / lo, 0, 1)
             return upper
 
-        node, first, q = self.descend(mixture, cells, choose)
-        M = self.tiles.mixed(mixture)
-        mass = M(first + self.tiles.tiles_below(node)) - M(first)
-        tile, c = self.tiles.draw_below(M, node, first, u)
-        return tile, max(q * (c / mass), LEAST)
+        M, i = self.tiles.mixed(mixture), 0
+        if u[0] < UNSEEN:
+            u[0] = u[0] / UNSEEN
+            tile, _ = self.tiles.draw(mixture, u)
+            return tile, self.q(M, cells, tile)
+        u[0] = (u[0] - UNSEEN) / (1 - UNSEEN)
+        while i < len(cells) - 1 and u[0] >= cells[i][1]:
+            u[0], i = u[0] - cells[i][1], i + 1
+        u[0] = clamp(u[0] / cells[i][1], 0, 1)
+        first, end, _ = self.descend(M, cells[i][0], choose)
+        x = u[1] * float(M(end) - M(first))
+        k = min(math.floor(x), M(end) - M(first) - 1)
+        tile = max(t for t in range(first, end) if M(t) - M(first) <= k)
+        u[1] = clamp((x - (M(tile) - M(first))) / (M(tile + 1) - M(tile)), 0, 1)
+        return tile, self.q(M, cells, tile)
 
     def find(self, mixture, cells, square):
         """The tile of a square and its q."""
-        M = self.tiles.mixed(mixture)
         tile = self.tiles.tile_of(square)
-        node, first, q = self.descend(
-            mixture, cells, lambda node, low, high: int(tile >= self.tiles.first_tile(node.halves[1])))
-        c = M(tile + 1) - M(tile)
-        if not (q > 0 and c > 0):
-            return tile, 0.0
-        return tile, max(q * (c / (M(first + self.tiles.tiles_below(node)) - M(first))), LEAST)
+        return tile, self.q(self.tiles.mixed(mixture), cells, tile)

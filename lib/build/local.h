@@ -4,7 +4,6 @@
 #include "build/accuracy/local.h"
 #include "build/environment.h"
 #include "build/progress.h"
-#include "compress/local/fit.h"
 #include "compress/local/fit_separate.h"
 #include "compress/local/normals.h"
 #include "compress/visibility/fit.h"
@@ -19,31 +18,22 @@ namespace acdf::build {
 /// Where a scene gathers light, and what hides it there.
 struct SceneVisibility {
     compress::VisibilityScene scene; ///< empty: there are no visibility cells
-    std::uint64_t local_bytes = 0;   ///< of the budget, for what is there without visibility cells and the tree of
-                                     ///< the environment; 0: a quarter of the rest
+    std::uint64_t local_bytes = 0;   ///< of the budget, for what is there without visibility cells; 0: a quarter
     compress::VisibilityFrame frame;
     std::vector<compress::PortalRectangle> portals; ///< among the cells
-};
-
-/// Why a local file has its shape.
-enum class ShapeFrom {
-    options, ///< it suits the others
-    request  ///< it was asked for
 };
 
 /// What `acdf local` was asked for, beside the probe.
 struct LocalOptions {
     compress::TargetOptions target;
     compress::Goal goal{compress::Goal::Kind::budget, 0, std::uint64_t{1} << 20,
-                        0.0};                 ///< cells: of the shared curves
+                        0.0};                 ///< cells: of the shared tree
     std::uint32_t subdivisions = 0;           ///< octahedral bins; 0: as suits the size
     std::uint32_t columns = 0, rows = 0;      ///< lat-long bins, if not 0
     std::uint32_t tiles = 0;                  ///< 0: as suits the size
     double max_weight = 0.0;                  ///< with sharing: of the measured weights; 0: no bound
     std::vector<compress::SceneNormal> scene; ///< empty: all normals
     bool sharing = true;
-    compress::LocalShape shape = compress::LocalShape::small; ///< with sharing
-    ShapeFrom shape_from = ShapeFrom::options;
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
     compress::FitOptions fit; ///< of a bin's tree, without sharing: cdf, pdf or uniform
     double cosine_share = 0.0;
@@ -58,7 +48,6 @@ std::string option_text(const std::string& reading, const LocalOptions& options)
 
 struct Local {
     std::vector<std::uint8_t> bytes;
-    compress::LocalShape shape = compress::LocalShape::small;
     LocalAccuracy accuracy; ///< over normals() of them
     std::uint32_t normals = 0;
 };

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kTestNormals = 256;
 
 Local measured(std::vector<std::uint8_t> bytes, const compress::Target& target, const LocalOptions& options) {
-    Local out = {std::move(bytes), options.shape, {}, 0};
+    Local out = {std::move(bytes), {}, 0};
     const std::vector<Normal> normals = test_normals(options.scene, kTestNormals);
     out.accuracy = summary(measure_normals(opened(out.bytes), target, normals));
     out.normals = static_cast<std::uint32_t>(normals.size());

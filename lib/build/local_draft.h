@@ -1,8 +1,8 @@
-// What local environment files of all shapes have in common: what they say of themselves, and their accuracy.
+// What local environment files of both forms have in common: what they say of themselves, and their accuracy.
 #pragma once
 
 #include "build/local.h"
-#include "build/local_size.h"
+#include "build/local_bins.h"
 #include "compress/store/store.h"
 
 #include <acdf/reader.h>

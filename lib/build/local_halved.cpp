@@ -21,6 +21,9 @@ constexpr std::uint64_t kFixed = 1500;  // bytes of a file beside bins and chunk
 constexpr double kBytesOfCell = 3.0;    // of a file, about
 /// Of a file with visibility cells: one part in so many is for all that is there without them.
 constexpr std::uint64_t kLocalPart = 4;
+constexpr std::uint64_t kMostLocal = 400000; // bytes: more tiles are more than columns can tell apart
+constexpr std::uint64_t kLeastCells = 1024; // bytes of a few visibility cells
+constexpr std::uint64_t kMetadata = 1024;   // of names and options, most often more than they take
 
 class HalvedLocals {
 public:
@@ -73,7 +76,8 @@ private:
         const compress::RowSize rows =
             fitter_.rows_for(std::max(0.0, bytes - double{kFixed}), of_bin, options_.subdivisions);
         code_bits_ = rows.code_bits;
-        return bins_as_many(options_, rows.subdivisions);
+        // Each has a record: where few are stored, these leave half of the file.
+        return bins_as_many(options_, rows.subdivisions, static_cast<std::size_t>(0.5 * bytes / of_bin));
     }
 
     compress::LocalHalvingsSize size_for(const NormalBins& bins, double bytes) {
@@ -83,23 +87,24 @@ private:
         return size;
     }
 
-    /// Of what of a file is there without visibility cells.
-    std::uint64_t local_bytes() const {
+    /// Of what of a file is there without visibility cells; where that takes `least`, too.
+    std::uint64_t local_bytes(std::uint64_t least) const {
         const SceneVisibility& visibility = options_.visibility;
         if (!visibility.scene) return budget_;
-        return visibility.local_bytes > 0 ? visibility.local_bytes : budget_ / kLocalPart;
+        if (visibility.local_bytes > 0) return visibility.local_bytes;
+        const std::uint64_t most = budget_ - std::min(budget_, kLeastCells);
+        return std::max(std::min(budget_ / kLocalPart, kMostLocal), std::min(least + kSlack, most));
     }
 
     Local of_bytes(std::uint64_t budget, const Progress& progress) {
         budget_ = budget;
-        const std::uint64_t bytes = local_bytes();
-        const NormalBins bins = bins_for(double(bytes));
+        const NormalBins bins = bins_for(double(local_bytes(0)));
         LocalHalvings nothing;
         nothing.halvings.axes = {-1};
         nothing.shares.assign(bins.normals.size(), 0.0f);
         nothing.roots.assign(bins.normals.size(), ACDF_NO_ROOT);
         if (options_.mis) nothing.records.resize(bins.normals.size(), {1.0f, 0.0f});
-        const std::uint64_t least = stored(nothing, bins).size();
+        const std::uint64_t least = stored(nothing, bins).size(), bytes = local_bytes(least);
         if (least > bytes) throw OutOfReach(budget, budget - bytes + least);
         const std::uint64_t room = bytes - least + 2 * ACDF_ALIGNMENT; // two chunks of a line each
         compress::LocalHalvingsSize size = size_for(bins, double(room));
@@ -110,8 +115,7 @@ private:
     compress::Description described(const LocalHalvings& fit, const NormalBins& bins) const {
         compress::Description out = description_of(target_, source_, options_, bins, {});
         out.shares = fit.shares;
-        out.chunks = {compress::rows_chunk(fit),
-                      compress::local_chunk(static_cast<float>(options_.cosine_share), {})};
+        out.chunks = {compress::rows_chunk(fit), compress::local_chunk(static_cast<float>(options_.cosine_share))};
         if (options_.mis) out.chunks.push_back(partner_chunk(options_.mis, fit.records, bins));
         return out;
     }
@@ -139,9 +143,14 @@ private:
         const SceneVisibility& visibility = options_.visibility;
         const std::vector<std::uint8_t> bytes = store(description, ACDF_CODEC_NONE);
         const File file = opened(bytes);
+        compress::Description bare = description;
+        bare.metadata.clear();
+        // How many cells there are must not depend on the names of files.
+        const std::uint64_t used =
+            std::max<std::uint64_t>(store(bare, ACDF_CODEC_NONE).size() + kMetadata, bytes.size());
         const std::uint64_t records = (sizeof(AcdfChunk) + ACDF_ALIGNMENT) * (visibility.portals.empty() ? 1 : 2);
         compress::VisibilitySize size;
-        size.bytes = budget_ > bytes.size() + records ? budget_ - bytes.size() - records : 0;
+        size.bytes = budget_ > used + records ? budget_ - used - records : 0;
         compress::VisibilityScene scene = visibility.scene;
         if (!visibility.portals.empty())
             scene.portals = std::make_shared<const compress::PortalSet>(
@@ -154,7 +163,7 @@ private:
             description.chunks.push_back(std::move(chunk));
         // A single cell, or a map of portals, may be more than is left.
         const std::uint64_t made = store(description, ACDF_CODEC_NONE).size();
-        if (made > budget_) throw OutOfReach(budget_, made);
+        if (made > budget_) throw OutOfReach(budget_, made + kSlack);
     }
 
     const compress::Target& target_;
@@ -163,7 +172,7 @@ private:
     compress::LocalHalvingsFitter fitter_;
     std::uint32_t code_bits_ = 7;
     std::uint64_t budget_ = 0; ///< of the file that is made
-    double max_weight_ = 0.0; ///< that a fit is held to; 0: none
+    double max_weight_ = 0.0;  ///< that a fit is held to; 0: none
 };
 
 } // namespace

@@ -5,7 +5,7 @@
 
 namespace acdf::build {
 
-/// As build_local, of shape halvings.
+/// As build_local, of bins that share what they can.
 Local build_halved(const compress::Target& target, const Source& source, const LocalOptions& options,
                    const Progress& progress);
 

@@ -1,8 +1,8 @@
 // A cascade as a fit makes it, before it is stored: a tree of curves with real probabilities.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace acdf::compress {
@@ -18,18 +18,21 @@ struct Curve {
     std::size_t segments() const { return knots.size() + 1; }
 };
 
-/// The first curve within a tile, to which no other curve leads.
-struct TileRoot {
-    std::uint32_t curve = 0;
-    double reach = 0.0;                 ///< how often sampling comes to it
-    std::array<std::uint32_t, 2> low{}; ///< where the tile begins on axes 0 and 1
-};
-
 /// Curves, children after their parents; `roots` has one a bin.
 struct Cascade {
     std::vector<Curve> curves;
     std::vector<std::uint32_t> roots;
-    std::vector<TileRoot> tiles{}; ///< where curves within tiles are no parts of a tree of the whole
 };
+
+/// Appends the curves of one bin.
+inline void append(const Cascade& bin, Cascade& out) {
+    const auto first = static_cast<std::int32_t>(out.curves.size());
+    out.roots.push_back(bin.roots.front() + static_cast<std::uint32_t>(first));
+    for (Curve curve : bin.curves) {
+        for (std::int32_t& child : curve.children)
+            if (child >= 0) child += first;
+        out.curves.push_back(std::move(curve));
+    }
+}
 
 } // namespace acdf::compress

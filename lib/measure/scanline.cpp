@@ -1,6 +1,5 @@
 #include "measure/scanline.h"
 
-#include "compress/fit/tree.h"
 #include "compress/sum.h"
 
 #include <algorithm>
@@ -42,13 +41,7 @@ Curve Scanline::fit(AcdfFit fit, std::uint32_t segments) const {
     compress::CurveBudget budget;
     budget.segments = segments;
     if (fit == ACDF_FIT_UNIFORM) return compress::fit_curve_uniform(row_, budget);
-    if (fit == ACDF_FIT_CDF) return compress::fit_curve_cdf(row_, budget);
-    if (fit == ACDF_FIT_PDF) return compress::fit_curve_pdf(row_, budget);
-    compress::FitOptions options;
-    options.goal.cells = segments;
-    const compress::Grid grid{{texels()}, {row_.measure}, {0}, values_.data(), nullptr};
-    const compress::Fitted fitted = compress::fit_trees({grid}, options);
-    return fitted.cascade.curves.at(fitted.cascade.roots.at(0)); // along one axis a tree is one curve
+    return fit == ACDF_FIT_CDF ? compress::fit_curve_cdf(row_, budget) : compress::fit_curve_pdf(row_, budget);
 }
 
 double Scanline::rms_error(const Curve& curve) const {

@@ -20,8 +20,8 @@ public:
     Scanline(const compress::Target& target, std::uint32_t row);
 
     std::uint32_t texels() const { return static_cast<std::uint32_t>(row_.mass.size()); }
-    /// The curve that a fit makes of the row with at most so many segments: uniform, cdf and variance with
-    /// pdfs constant on each segment, pdf linear.
+    /// The curve that a fit makes of the row with at most so many segments: uniform and cdf with pdfs constant on
+    /// each segment, pdf linear.
     compress::Curve fit(AcdfFit fit, std::uint32_t segments) const;
     /// sqrt of the integral of (p - p*)^2 over [0, 1].
     double rms_error(const compress::Curve& curve) const;

@@ -159,10 +159,6 @@ LocalOptions local_options(const Options& options) {
     options.take("max_weight", out.max_weight);
     options.take("cosine_share", out.cosine_share);
     options.take("sharing", out.sharing);
-    options.choose<LocalShape>(
-        "shape",
-        {{"halvings", LocalShape::halvings}, {"small", LocalShape::small}, {"auto", LocalShape::automatic}},
-        out.shape);
     const Renderer* renderer = renderer_of(options);
     out.mis = partner_of(options, renderer ? renderer->partner(out) : Partner{});
     out.codec = codec_of(options);

@@ -156,7 +156,6 @@ void take_parts(const Parts& parts, AcdfFile& file) noexcept {
     file.environment.total = parts.description->total;
     file.environment.parameterization = parts.description->parameterization;
     file.environment.partner = parts.partner;
-    file.environment.tree_units = parts.tree_units;
 }
 
 // Checks the bytes of a file, and makes its view. On failure the caller gives its memory back.

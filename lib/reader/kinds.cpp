@@ -2,7 +2,6 @@
 #include "check/check.h"
 #include "opened_file.h"
 #include "tables/indexed.h"
-#include "tables/local.h"
 #include "tables/table_lookup.h"
 
 #include <acdf/views.h>
@@ -17,30 +16,19 @@ std::size_t most_table_bytes(const AcdfFile& file) {
     return 8 * static_cast<std::size_t>(file.size) + (std::size_t{1} << 20);
 }
 
-// Runtime tables are only for speed: where there is no memory for them, the file is as good without.
-template <class Tables>
-const Tables* keep(const Tables* tables, AcdfFile& file) {
-    if (tables) file.table_bytes = 4 * std::uint64_t{tables->words};
-    return tables;
-}
-
-void make_local(const Parts& parts, bool tables, AcdfFile& file) {
+void make_local(const Parts& parts, AcdfFile& file) {
     const AcdfDescription& description = *parts.description;
     AcdfLocal& local = file.local;
     // Its environment is complete, whatever the file is made for: it has no partner.
-    local.blend = file.blend;
     local.environment.tree = parts.tree;
     local.environment.columns = parts.axes[ACDF_AXIS_PHI].resolution;
     local.environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
     local.environment.total = description.total;
     local.environment.parameterization = description.parameterization;
-    local.environment.tree_units = parts.tree_units;
     local.environment.halved = file.environment.halved;
     local.rows_of_normals = file.rows;
     local.partner = parts.partner;
     local.bins = parts.bins;
-    local.bright_tiles = parts.bright_tiles;
-    local.bright_tile_count = parts.local->bright_tile_count;
     local.cosine_share = static_cast<double>(parts.local->cosine_share);
     local.visibility = parts.visibility;
     local.portals = parts.portals;
@@ -50,10 +38,6 @@ void make_local(const Parts& parts, bool tables, AcdfFile& file) {
         local.rows = parts.axes[2].resolution;
         local.columns = parts.axes[3].resolution;
     }
-    if (tables && file.blend.tiles)
-        local.tables =
-            keep(make_local_tables(local, parts.tree_units, most_table_bytes(file), file.allocator, file.memory[2]),
-                 file);
 }
 
 void make_brdf(const Parts& parts, AcdfFile& file) {
@@ -82,8 +66,7 @@ void make_table(const Parts& parts, bool tables, AcdfFile& file) {
 } // namespace
 
 void make_view(const Parts& parts, bool tables, AcdfFile& file) noexcept {
-    file.blend = {parts.tiles, parts.splits, parts.tile_roots, parts.rows, parts.tree};
-    if (file.kind() == ACDF_KIND_LOCAL) make_local(parts, tables, file);
+    if (file.kind() == ACDF_KIND_LOCAL) make_local(parts, file);
     if (file.kind() == ACDF_KIND_BRDF) make_brdf(parts, file);
     if (file.kind() == ACDF_KIND_TABLE) make_table(parts, tables, file);
 }
@@ -92,6 +75,5 @@ LocalEnvironmentView File::local() const noexcept { return LocalEnvironmentView(
 BrdfView File::brdf() const noexcept { return BrdfView(opened_->brdf); }
 TableView File::table() const noexcept { return TableView(opened_->table); }
 IndexedEnvironment File::indexed() const noexcept { return IndexedEnvironment(opened_->indexed); }
-const AcdfBlend& File::blend() const noexcept { return opened_->blend; }
 
 } // namespace acdf

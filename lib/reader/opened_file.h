@@ -19,7 +19,6 @@ struct AcdfFile {
     std::uint64_t table_bytes; ///< of the runtime tables
     AcdfEnvironment environment;
 #ifndef ACDF_ENVIRONMENT_ONLY
-    AcdfBlend blend;
     AcdfLocal local;
     AcdfBrdf brdf;
     AcdfTable table;

@@ -1,6 +1,4 @@
 // What WebAssembly exports: the reader, over buffers of the module's memory. acdf.mjs makes classes of it.
-#include "reader/tables/sides.h"
-
 #include <acdf/reader.h>
 #include <acdf/shader/tables.h>
 #include <acdf/views.h>
@@ -79,16 +77,18 @@ struct Cells {
             add(nodes, leaf ? ACDF_LEAF : upper ? at + (node.link >> 5) : at + 1, half);
         }
     }
-    /// Of a tree of curves.
-    void add(const AcdfEnvironment& environment) {
-        const acdf::Cell whole = {1.0,   {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment.columns, environment.rows},
-                                  false, false};
-        acdf::each_cell(environment.tree, environment.root, whole,
-                        [this](const acdf::Cell& above, u32 axis, const acdf::CellPart& part) {
-                            const acdf::Cell cell = part.in(above, axis);
-                            add(cell.first[0], cell.last[0], cell.first[1], cell.last[1]);
-                            return count < (std::size_t{1} << 24); // shared curves may make more cells than bytes
-                        });
+    /// Below a curve that divides a box. False where there are too many: of shared curves there may be more cells
+    /// than bytes. A path passes at most 64 curves.
+    bool add(const std::uint8_t* tree, u32 at, const AcdfRange box[2]) {
+        const AcdfCurve curve = acdf_curve_at(tree, at);
+        for (u32 i = 0; i < curve.segments && count < (std::size_t{1} << 24); ++i) {
+            AcdfRange part[2] = {box[0], box[1]};
+            acdf_curve_narrow(&curve, i, &part[acdf_curve_axis(&curve)]);
+            const u32 link = acdf_curve_link(&curve, i);
+            if (link == 0) add(part[0].low, part[0].high, part[1].low, part[1].high);
+            else if (!add(tree, at + link, part)) return false;
+        }
+        return count < (std::size_t{1} << 24);
     }
 };
 
@@ -184,7 +184,9 @@ ACDF_EXPORT std::size_t acdf_web_cells(const Opened* opened, u32* out, std::size
         const AcdfSpan whole[2] = {{{0, environment.columns}}, {{0, environment.rows}}};
         cells.add(acdf_halvings_nodes(environment.halved), environment.halved->count ? 0 : ACDF_LEAF, whole);
     } else {
-        cells.add(environment);
+        AcdfRange whole[2];
+        acdf_sphere_ranges(environment.columns, environment.rows, whole);
+        cells.add(environment.tree, environment.root, whole);
     }
     return cells.count;
 }

@@ -8,10 +8,10 @@ data=$(cd "$2" && pwd)
 work=$(mktemp -d "${TMPDIR:-/tmp}/acdf-bench-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 local_file() { "$build/tools/acdf" local "$data/probes/$1" "${@:3}" -o "$work/$2.acdf" --quiet; }
-local_file noon_grass_1k.hdr small --budget 128KiB --shape small
-local_file noon_grass_1k.hdr large --shape small
-local_file noon_grass_1k.hdr octahedral --domain octahedral --shape small
-local_file spruit_sunrise_4k.exr wide --shape small
+local_file noon_grass_1k.hdr small --budget 128KiB
+local_file noon_grass_1k.hdr large
+local_file noon_grass_1k.hdr octahedral --domain octahedral
+local_file spruit_sunrise_4k.exr wide
 
 . "$here/instructions.sh"
 {

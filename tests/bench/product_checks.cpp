@@ -82,7 +82,7 @@ double cut_integral(const AcdfLocal& light, const Point& point) {
 /// Whether a point's light is sampled by parts.
 template <class Point>
 bool has_parts(const Point& point) {
-    return (point.light.what == ACDF_LOCAL_BLEND || point.light.what == ACDF_LOCAL_ROWS) && point.cut.count > 0;
+    return point.light.what == ACDF_LOCAL_ROWS && point.cut.count > 0;
 }
 
 /// The light's grid: of each square that has light its middle.

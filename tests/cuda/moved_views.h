@@ -1,6 +1,7 @@
 // Views of an open file for copies of its memory (acdf/moved.h).
 #pragma once
 
+#include <acdf/moved.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 

@@ -15,8 +15,8 @@ cd "$work"
 "$write" --write 4KiB.acdf $((4 << 10))
 "$write" --write octahedral_64KiB.acdf $((64 << 10)) octahedral
 "$acdf" env "$data/probes/noon_grass_1k.hdr" --budget 256KiB -o noon_grass_256KiB.acdf --quiet
-"$acdf" local "$data/probes/noon_grass_1k.hdr" --shape small -o local_1MiB.acdf --quiet
-"$acdf" local "$data/probes/noon_grass_1k.hdr" --budget 128KiB --shape small -o local_128KiB.acdf --quiet
+"$acdf" local "$data/probes/noon_grass_1k.hdr" -o local_1MiB.acdf --quiet
+"$acdf" local "$data/probes/noon_grass_1k.hdr" --budget 128KiB -o local_128KiB.acdf --quiet
 "$acdf" brdf "$data/brdfs/nickel.binary" --budget 128KiB -o nickel_128KiB.acdf --quiet
 tables() { "$acdf" export "$1.acdf" --target c --tables "$2.bin" -o "$2.h"; }
 tables 64KiB 64KiB

@@ -14,7 +14,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 python3 "$root/tests/inputs/sky_pfm.py" 256 sky.pfm
 "$acdf" env sky.pfm --filter nearest --budget 8KiB -o environment.acdf --quiet
-"$acdf" local sky.pfm --filter nearest --budget 64KiB --shape small -o local.acdf --quiet
+"$acdf" local sky.pfm --filter nearest --budget 64KiB -o local.acdf --quiet
 cp local.acdf product.acdf
 cp local.acdf cosine.acdf
 for sampler in cosine environment local product; do

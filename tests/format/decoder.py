@@ -291,8 +291,8 @@ FRESH = [["env", "sky.pfm", *options.split()] for options in (
 FRESH += [["env", "sky.pfm", "later.pfm", *options.split()] for options in (
     "--axis time=6,18 --budget 6KiB", "--axis time=6,18 --no-sun --budget 6KiB --compress zlib --domain latlong")]
 FRESH += [["local", "sky.pfm", *options.split()] for options in (
-    "--budget 24KiB --shape small", "--budget 24KiB --shape small --cosine-share 0.25 --compress zlib", "--no-sharing --normals 3 --knots 4x4",
-    "--budget 24KiB --mis cosine", "--budget 24KiB",
+    "--budget 24KiB", "--budget 24KiB --cosine-share 0.25 --compress zlib", "--budget 24KiB --mis cosine",
+    "--no-sharing --normals 3 --knots 4x4",
     "--no-sharing --normals 5x3 --fit cdf --knots 6x6 --cosine-share 0.1",
     "--no-sharing --normals 5x3 --fit uniform --knots 6x6 --compress zlib")]
 FRESH += [["brdf", *options.split()] for options in (
@@ -304,18 +304,17 @@ FRESH += [["table", *options.split()] for options in (
     "field.npy --cells 600 --indexed 2 --names i,j,nm --range nm=730:380 --compress zlib")]
 
 
-FEATURES = {"halvings", "tilts", "links", "tiles", "roots of tiles", "trees of bins", "bright tiles", "azimuths", "mirrored"}
+FEATURES = {"halvings", "tilts", "links", "rows", "trees of bins", "azimuths", "mirrored"}
 
 
 def features(view):
     """What of the format a file uses: fresh files together shall use it all."""
-    halved, tiles = isinstance(view.tree, Halvings), getattr(view, "tiles", None)
+    halved = isinstance(view.tree, Halvings)
+    has_rows = getattr(view, "rows_of_views" if isinstance(view, Brdf) else "rows", None) is not None
     curves = [] if halved else view.tree.curves.values()
     uses = {"halvings": halved, "tilts": any(curve.tilts for curve in curves), "links": any(curve.links for curve in curves),
-            "tiles": tiles is not None, "roots of tiles": tiles is not None and tiles.roots is not None,
-            "trees of bins": isinstance(view, (Local, Brdf)) and tiles is None,
-            "bright tiles": bool(getattr(view, "bright_tiles", None)), "azimuths": getattr(view, "F", 1) > 1,
-            "mirrored": getattr(view, "mirrored", False)}
+            "rows": has_rows, "trees of bins": isinstance(view, (Local, Brdf)) and not has_rows,
+            "azimuths": getattr(view, "F", 1) > 1, "mirrored": getattr(view, "mirrored", False)}
     return {name for name, there in uses.items() if there}
 
 

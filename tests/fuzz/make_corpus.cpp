@@ -30,11 +30,10 @@ int main(int argc, char** argv) {
     EnvironmentSpec complete = complete_environment();
     write(folder / "smallest", EnvironmentSpec().encode());
     write(folder / "complete", complete.encode());
-    write(folder / "local", lit_local().encode());
     write(folder / "normals", small_normals().encode());
     write(folder / "separate", separate_local().encode());
-    write(folder / "visibility", regional_local().encode());
-    write(folder / "portals", windowed_local().encode());
+    write(folder / "visibility", regional_normals().encode());
+    write(folder / "portals", windowed_normals().encode());
     write(folder / "brdf", shared_brdf().encode());
     write(folder / "separate_brdf", separate_brdf().encode());
     write(folder / "spare", spare_file().encode());

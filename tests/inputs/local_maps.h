@@ -5,8 +5,8 @@
 #include "tests/inputs/paths.h"
 #include "tests/inputs/synthetic.h"
 
-#include "compress/local/fit.h"
 #include "compress/local/fit_separate.h"
+#include "compress/local/halved/fit.h"
 #include "compress/sum.h"
 #include "input/probe/probe.h"
 
@@ -31,18 +31,23 @@ namespace acdf_test {
 
 // ---- files ----------------------------------------------------------------------------------------------
 
+/// Tiles whose probabilities rows hold, and cells in all of them, at most.
+struct LocalMapSize {
+    std::uint32_t tiles = 900;
+    std::uint64_t cells = 32768;
+};
+
 struct LocalFileOptions {
-    acdf::compress::LocalSize size;
+    LocalMapSize size;
     bool sharing = true;
     double cosine_share = 0.0;
     AcdfCodec codec = ACDF_CODEC_NONE;
 };
 
-/// Of so many tiles and bytes inside them.
-inline LocalFileOptions of_size(std::uint32_t tiles, std::uint64_t bytes, double cosine_share = 0.0,
+inline LocalFileOptions of_size(std::uint32_t tiles, std::uint64_t cells, double cosine_share = 0.0,
                                 bool sharing = true) {
     LocalFileOptions options;
-    options.size = {tiles, bytes};
+    options.size = {tiles, cells};
     options.cosine_share = cosine_share;
     options.sharing = sharing;
     return options;
@@ -64,6 +69,16 @@ inline acdf::compress::Description local_description(const acdf::compress::Targe
     return d;
 }
 
+inline acdf::compress::LocalHalvings local_halvings(const acdf::compress::Target& target,
+                                                    const acdf::compress::NormalBins& bins,
+                                                    const LocalMapSize& of) {
+    acdf::compress::LocalHalvingsSize size;
+    size.top = of.tiles - 1;
+    size.halvings = std::max<std::uint64_t>(of.cells, of.tiles) - 1;
+    size.bytes = std::uint64_t{1} << 32;
+    return acdf::compress::LocalHalvingsFitter(target, bins, {}).fit(bins, size, {});
+}
+
 inline std::vector<std::uint8_t> local_bytes(const acdf::compress::Target& target,
                                              const acdf::compress::NormalBins& bins,
                                              const LocalFileOptions& options) {
@@ -71,11 +86,10 @@ inline std::vector<std::uint8_t> local_bytes(const acdf::compress::Target& targe
     Description description = local_description(target, bins);
     const auto cosine = static_cast<float>(options.cosine_share);
     if (options.sharing) {
-        LocalFit fit = fit_local(target, bins, options.size);
-        description.shares = std::move(fit.shares);
-        description.chunks = shared_chunks(fit.shared);
-        description.chunks.push_back(local_chunk(cosine, fit.bright_tiles));
-        return store(fit.tree, description, options.codec);
+        const LocalHalvings fit = local_halvings(target, bins, options.size);
+        description.shares = fit.shares;
+        description.chunks = {rows_chunk(fit), local_chunk(cosine)};
+        return store(fit.halvings, fit.roots, description, options.codec);
     }
     FitOptions each;
     each.fit = ACDF_FIT_CDF;
@@ -83,7 +97,7 @@ inline std::vector<std::uint8_t> local_bytes(const acdf::compress::Target& targe
     each.column_segments = each.row_segments = 12;
     SeparateFit fit = fit_local_separate(target, bins, BinTarget::mean, each);
     description.shares = std::move(fit.shares);
-    description.chunks = {local_chunk(cosine, {})};
+    description.chunks = {local_chunk(cosine)};
     return store(fit.tree, description, options.codec);
 }
 

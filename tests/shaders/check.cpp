@@ -48,23 +48,28 @@ public:
     /// Of a pdf: what floats round.
     double near(const float d[3]) const {
         if (maps()) return kNear + cone_moves(d);
-        return brdf() ? Halves(wo_, d).rounded() + weighed() : kNear;
+        return weighed() + (brdf() ? Halves(wo_, d).rounded() : kNear);
     }
     /// Of rows of halvings other numbers lead to a cell than in shaders.
-    bool has_rows() const { return brdf() && file_.brdf().data().halved; }
+    bool has_rows() const { return rows().count > 0; }
     /// Beyond this it is another cell's.
     double same(const float d[3]) const {
-        return brdf() ? kSame + Halves(wo_, d).moved() + weighed() : maps() ? kSame + cone_moves(d) : kSame;
+        return kSame + weighed() + (brdf() ? Halves(wo_, d).moved() : maps() ? cone_moves(d) : 0.0);
     }
 
 private:
     bool brdf() const { return file_.kind() == ACDF_KIND_BRDF; }
+    /// Those that are mixed; none of other files.
+    AcdfRowMixture rows() const {
+        AcdfBrdfView view = {};
+        if (brdf() && file_.brdf().data().halved) acdf_brdf_view(&file_.brdf().data(), wo_, &view);
+        return file_.kind() == ACDF_KIND_LOCAL && point_.what == ACDF_LOCAL_ROWS ? point_.by.rows : view.mix;
+    }
     /// The reader rounds weights of rows to whole numbers, out of 2^21.
     double weighed() const {
-        AcdfBrdfView view;
+        const AcdfRowMixture mix = rows();
         double most = 0.0;
-        if (!acdf_brdf_view(&file_.brdf().data(), wo_, &view)) return 0.0;
-        for (int k = 0; k < view.mix.count; ++k) most = std::max(most, 1.0 / view.mix.weight[k]);
+        for (int k = 0; k < mix.count; ++k) most = std::max(most, 1.0 / mix.weight[k]);
         return most;
     }
     bool maps() const { return file_.kind() == ACDF_KIND_INDEXED; }

@@ -39,7 +39,7 @@ make_file() {
 }
 
 make_new_file() {
-    local probe=${PROBE:-$work/sky.pfm} domain=latlong kind=env shape=()
+    local probe=${PROBE:-$work/sky.pfm} domain=latlong kind=env
     if [ "$brdf" ]; then
         local model=cook-torrance:m=0.2
         [ "$form" = brdf ] || model=ggx:alpha=0.1,0.3
@@ -62,9 +62,9 @@ make_new_file() {
     [ -n "${PROBE-}" ] || "$make_sky" "$probe"
     case $form in *square) domain=octahedral ;; esac
     case $form in
-    local*) kind=local shape=(--shape small) ;;
+    local*) kind=local ;;
     esac
-    "$acdf" $kind "$probe" "${shape[@]}" --domain $domain --budget "${BUDGET:-16KiB}" -o "$work/sky.acdf" --quiet
+    "$acdf" $kind "$probe" --domain $domain --budget "${BUDGET:-16KiB}" -o "$work/sky.acdf" --quiet
 }
 
 # export TARGET -o FILE ...

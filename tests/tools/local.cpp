@@ -34,10 +34,7 @@ protected:
         write_rgb(path, 64, 32, rgb);
     }
 
-    /// Of the small shape, if no other is asked for.
     json made(std::vector<std::string> options, const std::string& source = "") {
-        if (std::find(options.begin(), options.end(), "--shape") == options.end())
-            options.insert(options.end(), {"--shape", "small"});
         options.insert(options.begin(),
                        {"local", source.empty() ? probe : source, "-o", output, "--force", "--json"});
         const Result result = run_acdf(options);
@@ -65,7 +62,7 @@ TEST_F(LocalCommand, OfAPartnerReportsIt) {
     EXPECT_EQ(info.at("partner").at("kind"), "cosine");
     EXPECT_NEAR(info.at("partner").at("share").get<double>(), 2.0 / 3.0, 1e-6);
     EXPECT_GT(info.at("partner").at("recommended_light_share").get<double>(), 0.0);
-    EXPECT_EQ(info.at("options"), "--mis cosine --shares 2:1 --shape small --budget 49152");
+    EXPECT_EQ(info.at("options"), "--mis cosine --shares 2:1 --budget 49152");
     const json measured = json::parse(run_acdf({"measure", output, "--against", probe, "--json"}).out);
     EXPECT_TRUE(measured.at("combined").get<bool>());
     EXPECT_EQ(measured.at("support_violations"), 0);
@@ -175,38 +172,31 @@ TEST_F(LocalCommand, WrongUsageIsOneLine) {
     expect_usage({"--no-sharing", "--fit", "variance"}, "--fit");
     expect_usage({"--no-sharing", "--target-variance", "0.1"}, "--target-variance");
     expect_usage({"--cosine-share", "1"}, "--cosine-share");
-    expect_usage({"--shape", "round"}, "--shape");
     expect_usage({"--mis", "brdf"}, "--mis");
-    for (const char* other : {"--no-sharing"}) expect_usage({"--shape", "halvings", other}, other);
 }
 
-TEST_F(LocalCommand, IsOneTreeOfHalvingsByDefault) {
+TEST_F(LocalCommand, IsOneTreeOfHalvings) {
     const Result result = run_acdf({"local", probe, "-o", output, "--json", "--budget", "48KiB"});
     ASSERT_EQ(result.code, 0) << result.err;
     const json report = json::parse(result.out);
-    EXPECT_EQ(report["shape"], "halvings");
     EXPECT_GT(report["tiles"], 20);
     EXPECT_LE(report["bytes"], 48 << 10);
     EXPECT_GE(report["bytes"], 40 << 10); // the map has no more texels
     EXPECT_EQ(report["support_violations"], 0);
     const json info = json::parse(run_acdf({"info", output, "--json"}).out);
-    EXPECT_EQ(info["local"]["shape"], "halvings");
     EXPECT_EQ(info["local"]["tiles"], report["tiles"]);
-    EXPECT_EQ(info["options"].get<std::string>().find("--shape"), std::string::npos);
     const Result measured = run_acdf({"measure", output, "--against", probe, "--json"});
     EXPECT_EQ(json::parse(measured.out)["relative_variance"], report["relative_variance"]);
     EXPECT_EQ(run_acdf({"validate", output}).code, 0);
-    EXPECT_LT(report["relative_variance"], made({"--shape", "small", "--budget", "48KiB"})["relative_variance"]);
-    EXPECT_EQ(made({"--shape", "auto", "--budget", "24KiB", "--max-weight", "50"}).at("shape"), "halvings");
-    EXPECT_EQ(made({"--shape", "auto", "--budget", "48KiB", "--mis", "cosine", "--heuristic", "power"}).at("shape"),
-              "halvings");
+    EXPECT_LE(made({"--budget", "24KiB", "--max-weight", "50"})["max_weight"], 50.0);
+    EXPECT_EQ(made({"--budget", "48KiB", "--mis", "cosine", "--heuristic", "power"})["support_violations"], 0);
 }
 
 TEST_F(LocalCommand, TheSmallestSizeThatIsReportedIsPossible) {
     ACDF_NOT_SANITIZED();
     const std::string told = "the smallest possible is about ";
     for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
-             {}, {"--normals", "20"}, {"--shape", "small"}, {"--mis", "cosine"}, {"--compress", "zlib"}}) {
+             {}, {"--normals", "20"}, {"--mis", "cosine"}, {"--compress", "zlib"}}) {
         std::vector<std::string> words{"local", probe, "-o", output, "-q", "--force"};
         words.insert(words.end(), options.begin(), options.end());
         words.insert(words.end(), {"--budget", "600"});

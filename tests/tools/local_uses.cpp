@@ -1,4 +1,5 @@
 // acdf info, validate, sample, pdf and plot of local environments, as a user runs them.
+#include "build/accuracy/cells.h"
 #include "tests/inputs/local_maps.h"
 #include "tests/tools/plot/files.h"
 #include "tests/tools/run.h"
@@ -69,19 +70,13 @@ TEST_F(LocalCommands, InfoReportsWhatBinsShare) {
     const json report = json::parse(run_acdf({"info", "--json", shared}).out);
     EXPECT_EQ(report["kind"], "local");
     EXPECT_EQ(report["bins"], 18);
-    EXPECT_EQ(report["local"], (json{{"normals", "2"},
-                                     {"bins_stored", 17},
-                                     {"tiles", 3},
-                                     {"rows", 5},
-                                     {"bright_tiles", 1},
-                                     {"shape", "small"},
-                                     {"cosine_share", 0.25}}));
+    EXPECT_EQ(report["local"],
+              (json{{"normals", "2"}, {"bins_stored", 17}, {"tiles", 15}, {"rows", 5}, {"cosine_share", 0.0}}));
     ASSERT_EQ(report["axes"].size(), 3u);
     EXPECT_EQ(report["axes"][2]["name"], "normal");
     EXPECT_EQ(report["axes"][2]["role"], "indexed");
     const std::string text = run_acdf({"info", shared}).out;
-    for (const char* part :
-         {"local, format", "17 stored; 3 tiles shared by 5 rows, 1 bright tiles; shape small; cosine share 0.25"})
+    for (const char* part : {"local, format", "17 stored; 15 tiles shared by 5 rows; cosine share 0"})
         EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
@@ -99,12 +94,11 @@ TEST_F(LocalCommands, ValidateFindsWhatIsWrongWithRows) {
     std::string bytes = read_text(shared);
     const auto* chunks = reinterpret_cast<const AcdfChunk*>(&file.header() + 1);
     for (std::uint32_t i = 0; i < file.header().chunk_count; ++i)
-        if (chunks[i].type == ACDF_CHUNK_ROWS) bytes[chunks[i].offset + 1] = 9; // the light's tile
+        if (chunks[i].type == ACDF_CHUNK_NORMALS) bytes[chunks[i].offset + 12] = 9; // what is reserved
     const Result result = run_acdf({"validate", "-"}, bytes);
     EXPECT_EQ(result.code, 3);
     EXPECT_NE(result.out.find("error 4001"), std::string::npos) << result.out;
-    EXPECT_NE(result.out.find("error 7007 (bright-tile-row): bright tile 0 in bin 0"), std::string::npos)
-        << result.out;
+    EXPECT_NE(result.out.find("error 6039"), std::string::npos) << result.out;
 }
 
 TEST_F(LocalCommands, SamplesAreThoseOfTheReader) {
@@ -250,19 +244,27 @@ TEST(PlotLocal, HorizonIsWhereTheCosineVanishes) {
     }
 }
 
-// Lines of cells run where the pdf changes.
+// Twenty pixels a grid step: each cell's first column and row of pixels, but for the edges of the picture.
 TEST(PlotLocal, KnotsAreTheBordersOfCells) {
+    constexpr int scale = 20;
     File file;
     ASSERT_TRUE(File::open(shared.c_str(), file).ok());
-    const build::Map map = tools::plot_map(build::Layout::latlong, 12 * 20); // twenty pixels a column, of 12 x 8
+    const AcdfEnvironment env = file.local().data().environment;
+    const build::Map map = tools::plot_map(build::Layout::latlong, static_cast<int>(env.columns) * scale);
     const auto opacity = tools::knot_opacity({file.local(), {0.0f, 0.0f, 1.0f}}, map);
-    const auto at = [&](int column, int row) { return opacity[std::size_t(row * map.width + column)]; };
-    EXPECT_GT(at(5 * 20, 7), 0.9f);       // between tile 0 and the others
-    EXPECT_GT(at(7 * 20, 7), 0.9f);       // within the light
-    EXPECT_GT(at(9 * 20 + 10, 45), 0.9f); // below it: row 3 of 8, of 120 pixels
-    EXPECT_EQ(at(9 * 20 + 10, 90), 0.0f); // tile 2 is one cell
-    EXPECT_EQ(at(9 * 20, 90), 0.0f);
-    EXPECT_GT(at(50, 30), 0.9f); // row 2: a knot of the curve in tile 0
+    const double stretch = map.height / (double(env.rows) * scale);
+    std::uint32_t borders = 0;
+    const std::uint32_t tiles = static_cast<std::uint32_t>(build::tile_boxes(file).size());
+    for (std::uint32_t t = 0; t < tiles; ++t)
+        build::for_each_tile_cell(file, t, [&](const build::Cell& cell) {
+            const int x = static_cast<int>(cell.range[0].low) * scale;
+            const int y = static_cast<int>(stretch * scale * (0.5 * (cell.range[1].low + cell.range[1].high)));
+            const std::size_t at = std::size_t(y) * std::size_t(map.width) + std::size_t(x);
+            EXPECT_GE(opacity[at], x > 0 ? 0.9f : 0.0f) << x << ' ' << y;
+            EXPECT_EQ(opacity[at + scale / 2], 0.0f) << x << ' ' << y; // inside
+            borders += x > 0;
+        });
+    EXPECT_GT(borders, 40u);
 }
 
 } // namespace

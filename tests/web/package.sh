@@ -34,7 +34,7 @@ done
 
 "$make_sky" sky.pfm
 "$acdf" env sky.pfm --budget 16KiB --compress zlib -o sky.acdf --quiet
-"$acdf" local sky.pfm --shape small --budget 64KiB -o local.acdf --quiet
+"$acdf" local sky.pfm --budget 64KiB -o local.acdf --quiet
 "$acdf" sample sky.acdf -n 20000 >sky.csv
 "$acdf" sample local.acdf -n 20000 --normal 0,0.6,0.8 >local.csv
 "$acdf" export sky.acdf --target glsl --tables sky.bin >sky.glsl

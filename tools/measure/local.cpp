@@ -81,7 +81,7 @@ std::uint64_t count_cells(const File& file) {
     std::uint64_t cells = 0;
     const auto count = [&](const build::Cell&) { ++cells; };
     const std::vector<std::array<AcdfRange, 2>> boxes = build::tile_boxes(file);
-    for (std::uint32_t t = 0; t < boxes.size(); ++t) build::for_each_tile_cell(file, t, boxes[t].data(), count);
+    for (std::uint32_t t = 0; t < boxes.size(); ++t) build::for_each_tile_cell(file, t, count);
     for (std::uint32_t b = 0; boxes.empty() && b < file.description().bin_count; ++b)
         if (file.bin(b).root != ACDF_NO_ROOT) build::for_each_cell(file, file.bin(b).root, count);
     return cells;

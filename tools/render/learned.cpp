@@ -78,7 +78,6 @@ LearnedSampler learned_sampler(const builder::Target& target, const std::vector<
                                std::uint64_t bytes, bool beside_cosine) {
     builder::LocalOptions light;
     light.goal = builder::Goal::of_budget(bytes / kLightPart);
-    light.shape = builder::LocalShape::small;
     builder::Local made;
     throw_unless_built(builder::local(target, light, made));
 

@@ -67,7 +67,6 @@ Table local_table(const builder::Target& target, const SamplerSpec& spec,
                   const std::vector<builder::SceneNormal>& normals) {
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(spec.bytes);
-    options.shape = builder::LocalShape::small;
     options.mis = spec.mis;
     if (spec.of_scene) options.normals = normals;
     builder::Local made;

@@ -3,7 +3,7 @@
 #include "build/accuracy/combination.h"
 #include "build/accuracy/local.h"
 #include "build/accuracy/texel_cosines.h"
-#include "compress/fit/tiles.h"
+#include "compress/boxes.h"
 #include "compress/parallel.h"
 #include "measure/random.h"
 #include "measure/samplers/light_samplers.h"
@@ -25,11 +25,7 @@ constexpr std::size_t kSurfaces = 2; ///< diffuse, glossy
 
 /// The direction of the middle of a texel.
 Direction texel_middle(const compress::Target& target, std::uint32_t row, std::uint32_t column) {
-    compress::Box texel;
-    texel.begin[0] = row;
-    texel.end[0] = row + 1;
-    texel.begin[1] = column;
-    texel.end[1] = column + 1;
+    const compress::Box texel{{row, column}, {row + 1, column + 1}};
     const std::array<double, 3> middle = compress::centre(target, texel);
     return {static_cast<float>(middle[0]), static_cast<float>(middle[1]), static_cast<float>(middle[2])};
 }

@@ -64,18 +64,6 @@ CellOf<Axes> whole(const File& file) {
     return cell;
 }
 
-using TileBox = std::array<AcdfRange, 2>;
-
-void add_boxes(const AcdfBlend& blend, std::uint32_t node, const TileBox& box, std::vector<TileBox>& out) {
-    if (node & ACDF_TILE_FLAG) return out.push_back(box); // tiles are numbered in this order
-    const AcdfSplit& split = blend.splits[node];
-    for (int upper = 0; upper < 2; ++upper) {
-        TileBox part = box;
-        acdf_range_cut(&part[split.place & 7u], split.place >> 3, upper);
-        add_boxes(blend, split.child[upper], part, out);
-    }
-}
-
 } // namespace
 
 void for_each_cell(const EnvironmentView& environment, const std::function<void(const Cell&)>& visit) {
@@ -92,44 +80,24 @@ void for_each_cell(const File& file, std::uint32_t root, const std::function<voi
     descend(file.tree(), root, whole<2>(file), visit);
 }
 
-void for_each_cell_in(const File& file, std::uint32_t root, const AcdfRange* range,
-                      const std::function<void(const Cell&)>& visit) {
-    Cell cell = {{range[0], range[1]}, 1.0};
-    descend(file.tree(), root, cell, visit);
-}
-
-std::vector<TileBox> tile_boxes(const File& file) {
-    std::vector<TileBox> out;
-    if (const AcdfNormalRows* rows = file.local().data().rows_of_normals) {
-        for (std::uint32_t t = 0; t <= rows->splits; ++t) {
-            const AcdfTopTile& tile = ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles)[t];
-            TileBox box;
-            acdf_halved_ranges(tile.box, box.data());
-            out.push_back(box);
-        }
-        return out;
+std::vector<std::array<AcdfRange, 2>> tile_boxes(const File& file) {
+    std::vector<std::array<AcdfRange, 2>> out;
+    const AcdfNormalRows* rows = file.local().data().rows_of_normals;
+    for (std::uint32_t t = 0; rows && t <= rows->splits; ++t) {
+        const AcdfTopTile& tile = ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles)[t];
+        acdf_halved_ranges(tile.box, out.emplace_back().data());
     }
-    const AcdfBlend& blend = file.blend();
-    if (!blend.tiles) return out;
-    const TileBox whole = {{{0, file.axis(0).resolution, 0.0}, {0, file.axis(1).resolution, 0.0}}};
-    add_boxes(blend, acdf_blend_root(&blend), whole, out);
     return out;
 }
 
-void for_each_tile_cell(const File& file, std::uint32_t tile, const AcdfRange* range,
-                        const std::function<void(const Cell&)>& visit) {
+void for_each_tile_cell(const File& file, std::uint32_t tile, const std::function<void(const Cell&)>& visit) {
     const AcdfLocal local = file.local().data();
-    if (const AcdfNormalRows* rows = local.rows_of_normals) {
-        const AcdfTopTile& of = ACDF_TOP_ARRAY(AcdfTopTile, rows, rows->tiles)[tile];
-        const double whole = acdf_span_share(&of.steps[0]) * acdf_span_share(&of.steps[1]);
-        return descend(acdf_halvings_nodes(local.environment.halved), of.node, of.steps, of.box, [&](Cell cell) {
-            cell.probability = of.node == ACDF_LEAF ? 1.0 : cell.probability / whole;
-            visit(cell);
-        });
-    }
-    const std::uint32_t root = local.blend.roots ? local.blend.roots[tile] : ACDF_NO_ROOT;
-    if (root == ACDF_NO_ROOT) return visit({{range[0], range[1]}, 1.0});
-    for_each_cell_in(file, root, range, visit);
+    const AcdfTopTile& of = ACDF_TOP_ARRAY(AcdfTopTile, local.rows_of_normals, local.rows_of_normals->tiles)[tile];
+    const double whole = acdf_span_share(&of.steps[0]) * acdf_span_share(&of.steps[1]);
+    descend(acdf_halvings_nodes(local.environment.halved), of.node, of.steps, of.box, [&](Cell cell) {
+        cell.probability = of.node == ACDF_LEAF ? 1.0 : cell.probability / whole;
+        visit(cell);
+    });
 }
 
 void for_each_table_cell(const File& file, std::uint32_t bin, const std::function<void(const TableCell&)>& visit) {

@@ -31,16 +31,11 @@ void for_each_cell(const EnvironmentView& environment, const std::function<void(
 /// The same for the tree of curves under `root`.
 void for_each_cell(const File& file, std::uint32_t root, const std::function<void(const Cell&)>& visit);
 
-/// The same for a tree within a box: range[2], without tilts.
-void for_each_cell_in(const File& file, std::uint32_t root, const AcdfRange* range,
-                      const std::function<void(const Cell&)>& visit);
-
 /// The boxes of the tiles of a local environment, in their order; none where it has no tiles.
 std::vector<std::array<AcdfRange, 2>> tile_boxes(const File& file);
 
-/// The same for what is in a tile of a local environment, whatever its shape; `range` is the tile's box.
-void for_each_tile_cell(const File& file, std::uint32_t tile, const AcdfRange* range,
-                        const std::function<void(const Cell&)>& visit);
+/// The same for what is in a tile of a local environment.
+void for_each_tile_cell(const File& file, std::uint32_t tile, const std::function<void(const Cell&)>& visit);
 
 /// The same for a bin of a table that has energy.
 void for_each_table_cell(const File& file, std::uint32_t bin, const std::function<void(const TableCell&)>& visit);

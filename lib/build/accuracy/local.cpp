@@ -44,7 +44,7 @@ public:
         if (!boxes_.empty()) {
             shared_ = {std::vector<std::uint32_t>(texels), std::vector<double>(texels), {}, 0};
             for (std::uint32_t t = 0; t < boxes_.size(); ++t)
-                for_each_tile_cell(file_, t, boxes_[t].data(),
+                for_each_tile_cell(file_, t,
                                    [&](const Cell& cell) { fill(cell.range, cell.probability, t, shared_); });
         }
         Sum total;
@@ -59,7 +59,7 @@ public:
         const double length = std::hypot(double{normal[0]}, double{normal[1]}, double{normal[2]});
         const float unit[3] = {static_cast<float>(normal[0] / length), static_cast<float>(normal[1] / length),
                                static_cast<float>(normal[2] / length)};
-        if (source.what >= ACDF_LOCAL_BLEND) return sum(unit, shared_, tile_probabilities(source));
+        if (source.what == ACDF_LOCAL_ROWS) return sum(unit, shared_, tile_probabilities(source.by.rows));
         if (source.what == ACDF_LOCAL_NOTHING) return sum(unit, shared_, {});
         if (own.density.empty() || own.root != source.by.root) paint_tree(source.by.root, own);
         return sum(unit, own, {1.0});
@@ -110,30 +110,9 @@ private:
         else for_each_cell(file_, root, fill_cell);
     }
 
-    void spread(std::uint32_t node, const AcdfMixture& mix, double whole, std::vector<double>& out) const {
-        if (node & ACDF_TILE_FLAG) {
-            out[node & ~ACDF_TILE_FLAG] = acdf_mixture_sum(&mix) / whole;
-            return;
-        }
-        AcdfMixture part[2] = {mix, mix};
-        double sum[2];
-        acdf_mixture_split(&mix, &local_.blend, node, part, sum);
-        for (int upper = 0; upper < 2; ++upper)
-            spread(local_.blend.splits[node].child[upper], part[upper], whole, out);
-    }
-
-    static void spread_rows(const AcdfRowMixture& mix, std::vector<double>& out) {
-        for (std::uint32_t t = 0; t < out.size(); ++t) out[t] = acdf_rows_mass(&mix, t, t + 1) * 0x1p-52;
-    }
-
-    std::vector<double> tile_probabilities(const AcdfLocalPoint& source) const {
+    std::vector<double> tile_probabilities(const AcdfRowMixture& mix) const {
         std::vector<double> out(boxes_.size());
-        if (source.what == ACDF_LOCAL_ROWS) spread_rows(source.by.rows, out);
-        else spread(boxes_.size() > 1 ? 0 : ACDF_TILE_FLAG, source.mix, source.sum, out);
-        const AcdfScaledNormal normal = acdf_local_scaled_normal(&source);
-        for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
-            out[local_.bright_tiles[k].tile] =
-                acdf_bright_tile_weight(&local_.bright_tiles[k], &normal) / source.sum;
+        for (std::uint32_t t = 0; t < out.size(); ++t) out[t] = acdf_rows_mass(&mix, t, t + 1) * 0x1p-52;
         return out;
     }
 

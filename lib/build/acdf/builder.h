@@ -51,6 +51,9 @@
 
 namespace acdf::builder {
 
+/// Most tiles of a local file, and cells of each view of a BRDF.
+constexpr std::uint32_t max_tiles = 32768;
+
 // ---- options ----
 
 /// How large a file is to be, or how accurate; only what `kind` names counts. `automatic`, the default, is the
@@ -221,14 +224,6 @@ enum class BinTarget {
     centre ///< the middle one, as in ibid., §7.1: biased for others, which may see what it does not
 };
 
-/// How bins of normals are stored that share what they can.
-enum class LocalShape {
-    small,    ///< curves in tiles and a byte a split in rows: knows visibility cells, bounds on weights, and all
-              ///< partners
-    halvings, ///< one tree of halvings, with a row of codes for each bin: the least noise for its bytes
-    automatic ///< halvings, or small where options ask for what that has not
-};
-
 /// A point of a scene where light is gathered: on a surface, or in the air.
 struct VisibilityPoint {
     float position[3] = {}, normal[3] = {0.0f, 0.0f, 1.0f};
@@ -265,12 +260,11 @@ struct LocalOptions {
     Goal goal;                           ///< with sharing; cells: of what bins share
     std::uint32_t subdivisions = 0;      ///< octahedral bins, 4 n^2 + 2 of them, n up to 256; 0: as suits the size
     std::uint32_t columns = 0, rows = 0; ///< instead lat-long bins, up to 1024 each, without sharing
-    std::uint32_t tiles = 0;             ///< up to ACDF_MAX_TILES; 0: as suits the size
+    std::uint32_t tiles = 0;             ///< up to max_tiles; 0: as suits the size
     double max_weight = 0.0;             ///< with sharing: the largest measured weight, as FitOptions; 0: no bound
     std::vector<SceneNormal> normals;    ///< only what a scene has; empty: all normals
     double cosine_share = 0.0;           ///< of samples that are taken around the normal instead, in [0, 0.99]
     bool sharing = true;                 ///< bins share tiles; else each has a tree of its own, as in the paper
-    LocalShape shape = LocalShape::automatic;
     BinTarget bin_target = BinTarget::mean; ///< without sharing
     FitOptions fit;                         ///< of a bin's tree, without sharing: cdf, pdf or uniform
     Partner mis;                            ///< of bins that share tiles, without a cosine_share
@@ -286,8 +280,7 @@ struct Local {
     std::vector<std::uint8_t> bytes; ///< the whole file
     LocalAccuracy accuracy;          ///< over `normals` of them: random ones, or those of the scene
     std::uint32_t normals = 0;
-    LocalShape shape = LocalShape::small; ///< of the file: not automatic
-    BadTexels bad_texels;                 ///< what was mended
+    BadTexels bad_texels; ///< what was mended
 };
 
 /// A local environment map: a pdf for every normal (acdf::LocalEnvironmentView).
@@ -331,7 +324,7 @@ Status tabulated(const Array& table, Brdf& brdf) noexcept;
 /// How a BRDF is fitted and stored.
 struct BrdfOptions {
     Channels channels;
-    Goal goal; ///< of the variance fit; cells: of each view, up to ACDF_MAX_TILES
+    Goal goal; ///< of the variance fit; cells: of each view, up to max_tiles
     /// Variance: views share a tree and are interpolated. Else each view has a tree, and the nearest serves.
     AcdfFit fit = ACDF_FIT_VARIANCE;
     /// Stored views, 2 to 1024 in theta_o, and 1 or 4 to 1024 in phi_o; 0: as suits the size.

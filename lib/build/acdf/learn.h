@@ -42,8 +42,8 @@ struct LearnOptions {
 /// Counts what shadow rays meet, and makes visibility cells of it. Takes up to 64 MiB, beside files.
 class LearnedVisibility {
 public:
-    /// For the light of a local environment file, whose bytes are copied: of the small shape, and made without an
-    /// MIS partner (`acdf local`). Visibility cells that it has serve until the first update.
+    /// For the light of a local environment file, whose bytes are copied: made without an MIS partner
+    /// (`acdf local`). Visibility cells that it has serve until the first update.
     /// ErrorCode::bad_source: it is none; invalid_argument: options are out of range.
     static Status make(const void* file, std::size_t size, const LearnOptions& options,
                        LearnedVisibility& result) noexcept;

@@ -98,24 +98,15 @@ void check_bins(const LocalOptions& options) {
     require(options.columns == 0 || options.subdivisions == 0, "bins are either subdivisions, or columns and rows");
     require(options.columns == 0 || !options.sharing,
             "columns and rows are for bins without sharing: those that share tiles are interpolated");
-    require(options.tiles <= ACDF_MAX_TILES, "tiles is above ACDF_MAX_TILES");
+    require(options.tiles <= max_tiles, "tiles is above max_tiles");
     require(options.tiles == 0 || options.sharing, "tiles is for bins that share them");
     check_max_weight(options.max_weight);
     require(options.max_weight == 0.0 ||
                 (options.sharing && !options.visibility.point && options.mis.kind == ACDF_PARTNER_NONE),
             "max_weight is for bins that share tiles, without visibility cells or an MIS partner");
-    require(options.shape == LocalShape::small || options.shape == LocalShape::halvings ||
-                options.shape == LocalShape::automatic,
-            "shape is not a LocalShape");
-    require(options.shape != LocalShape::halvings || may_be_halvings(options),
-            "one tree of halvings is for bins that share it");
-    require(options.shape != LocalShape::small || !options.visibility.point,
-            "the small shape has no visibility cells");
 }
 
 } // namespace
-
-bool may_be_halvings(const LocalOptions& options) { return options.sharing; }
 
 void check(const TargetOptions& options) {
     check(options.channels);
@@ -208,8 +199,8 @@ void check(const BrdfOptions& options) {
     require(options.max_weight == 0.0 || options.fit == ACDF_FIT_VARIANCE, "max_weight is for the variance fit");
     if (options.fit != ACDF_FIT_VARIANCE) return;
     check(options.goal, 1);
-    require(options.goal.kind != Goal::Kind::cells || options.goal.cells <= ACDF_MAX_TILES,
-            "goal.cells of a BRDF is above ACDF_MAX_TILES");
+    require(options.goal.kind != Goal::Kind::cells || options.goal.cells <= max_tiles,
+            "goal.cells of a BRDF is above max_tiles");
 }
 
 void check(const IndexedOptions& options, std::size_t maps) {

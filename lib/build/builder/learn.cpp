@@ -31,7 +31,9 @@ struct LearnedFile {
 namespace {
 
 constexpr std::size_t kSlots = std::size_t{1} << 20; ///< 28 MiB; cells that are found take about as much
-constexpr std::uint32_t kSplitsOfSphere = 500;       ///< that cells distinguish
+/// Columns, which all cells share, are so many times the root of the bytes of cells.
+constexpr double kColumns = 0.3;
+constexpr double kMostColumns = (1u << compress::VisibilityCounts::part_bits) - 1;
 
 std::shared_ptr<const LearnedFile> opened(std::vector<std::uint8_t> bytes) {
     auto out = std::make_shared<LearnedFile>();
@@ -116,7 +118,9 @@ Status LearnedVisibility::make(const void* file, std::size_t size, const LearnOp
                 throw std::invalid_argument("a file made for MIS has no light where its partner suffices; make it "
                                             "without --mis");
             data->options = options;
-            data->parts.emplace(data->local, given.description().bin_count, kSplitsOfSphere);
+            data->parts.emplace(
+                data->local, given.description().bin_count,
+                static_cast<std::uint32_t>(std::min(kColumns * std::sqrt(double(options.bytes)), kMostColumns)));
             data->counts.emplace(low, high, kSlots);
             data->last = data->given;
             result.data_ = std::move(data);

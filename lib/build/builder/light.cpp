@@ -37,7 +37,6 @@ Local make(const Target& target, const LocalOptions& given, const build::Progres
     out.bytes = std::move(made.bytes);
     out.accuracy = made.accuracy;
     out.normals = made.normals;
-    out.shape = made.shape == compress::LocalShape::halvings ? LocalShape::halvings : LocalShape::small;
     out.bad_texels = target.data()->bad;
     return out;
 }

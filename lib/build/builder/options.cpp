@@ -154,11 +154,6 @@ build::SceneVisibility internal(const Visibility& visibility) {
 
 } // namespace
 
-compress::LocalShape shape_of(const LocalOptions& options) {
-    return options.shape != LocalShape::small && may_be_halvings(options) ? compress::LocalShape::halvings
-                                                                          : compress::LocalShape::small;
-}
-
 build::LocalOptions internal(const LocalOptions& options) {
     build::LocalOptions out;
     out.target = internal(options.target);
@@ -171,8 +166,6 @@ build::LocalOptions internal(const LocalOptions& options) {
     out.scene = internal(options.normals);
     out.mis = internal(options.mis);
     out.sharing = options.sharing;
-    out.shape = shape_of(options);
-    out.shape_from = options.shape == LocalShape::automatic ? build::ShapeFrom::options : build::ShapeFrom::request;
     out.bin_target =
         options.bin_target == BinTarget::centre ? compress::BinTarget::centre : compress::BinTarget::mean;
     out.fit = internal(options.fit);

@@ -18,9 +18,6 @@ build::BrdfFileOptions internal(const BrdfOptions& options);
 build::IndexedOptions internal(const IndexedOptions& options);
 build::TableOptions internal(const TableOptions& options, std::uint64_t bins);
 
-/// Whether one tree of halvings has what options ask for.
-bool may_be_halvings(const LocalOptions& options);
-
 // Throw build::OptionError for what is out of range or contradicts itself.
 void check(const TargetOptions& options);
 void check(const EnvironmentOptions& options);

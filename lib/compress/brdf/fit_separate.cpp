@@ -93,17 +93,6 @@ void place_knots(Cascade& cascade, const HalfGrid& grid) {
             knot = (curve.axis == kRowAxis ? grid.row_knots : grid.column_knots)[knot];
 }
 
-/// Appends one bin's curves.
-void append(const Cascade& bin, Cascade& out) {
-    const auto first = static_cast<std::int32_t>(out.curves.size());
-    out.roots.push_back(bin.roots.front() + static_cast<std::uint32_t>(first));
-    for (Curve curve : bin.curves) {
-        for (std::int32_t& child : curve.children)
-            if (child >= 0) child += first;
-        out.curves.push_back(std::move(curve));
-    }
-}
-
 Cascade fit_each(const std::vector<Target>& targets, const HalfGrid& grid, const BrdfOptions& options) {
     FitOptions fit;
     fit.fit = options.fit;

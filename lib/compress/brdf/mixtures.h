@@ -1,8 +1,8 @@
 // Which of the views of a BRDF are stored, how those between them are mixed, and what each stored view is to serve.
 #pragma once
 
+#include "compress/brdf/row_mixtures.h"
 #include "compress/brdf/views.h"
-#include "compress/fit/shared.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // What cells of half-vectors cost the stored views of a BRDF.
 #pragma once
 
-#include "compress/fit/shared.h"
+#include "compress/brdf/row_mixtures.h"
 #include "compress/halvings/costs.h"
 
 #include <cstddef>

@@ -1,8 +1,8 @@
 // The views at which a BRDF is looked at before it is fitted, and which of them are worth storing.
 #pragma once
 
+#include "compress/brdf/row_mixtures.h"
 #include "compress/brdf/target.h"
-#include "compress/fit/shared.h"
 
 #include <cstdint>
 #include <vector>

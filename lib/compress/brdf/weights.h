@@ -1,8 +1,8 @@
 // What bounds the weights of samples of a BRDF: the least that the rows of its views must give to each cell.
 #pragma once
 
+#include "compress/brdf/row_mixtures.h"
 #include "compress/brdf/views.h"
-#include "compress/fit/shared.h"
 
 #include <cstdint>
 #include <vector>

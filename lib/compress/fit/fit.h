@@ -9,7 +9,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 
 namespace acdf::compress {
@@ -24,13 +23,7 @@ enum class Conditional { energy, mean };
 /// Called from one thread at a time with the finished share in [0, 1].
 using Progress = std::function<void(double)>;
 
-/// Size of the file that a tree would make.
-using FileSize = std::function<std::uint64_t(const EncodedTree&)>;
-
-/// The same of curves that are stored otherwise than they were fitted.
-using CascadeSize = std::function<std::uint64_t(const Cascade&)>;
-
-/// What the tree of the variance fit is to reach.
+/// What the variance fit is to reach.
 struct Goal {
     enum class Kind { cells, budget, variance };
 
@@ -42,17 +35,12 @@ struct Goal {
 
 struct FitOptions {
     AcdfFit fit = ACDF_FIT_VARIANCE;
-    std::optional<Order> order; ///< empty: as the fit sees fit (a tree), else phi
-    Goal goal;                  ///< variance
-    FileSize file_size;         ///< needed for a budget; by default the bytes of the tree
-    CascadeSize cascade_size;   ///< instead of file_size
-    /// A goal of variance is out of reach where it takes many more bytes; it bounds the memory of the search.
-    std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
-    bool size_by_length = false;        ///< file_size depends on nothing but the number of bytes of the tree
-    double max_weight = 0.0;            ///< variance: the largest f/p over its mean; 0: no bound
-    std::uint32_t column_segments = 64; ///< uniform, cdf, pdf: segments of a curve over columns (phi)
-    std::uint32_t row_segments = 64;    ///< the same over rows (theta)
-    double epsilon = 0.0;               ///< cdf, pdf: see CurveBudget
+    std::optional<Order> order;                    ///< of the others; empty: phi
+    Goal goal;                                     ///< variance
+    double max_weight = 0.0;                       ///< variance: the largest f/p over its mean; 0: no bound
+    std::uint32_t column_segments = 64;            ///< uniform, cdf, pdf: segments of a curve over columns (phi)
+    std::uint32_t row_segments = 64;               ///< the same over rows (theta)
+    double epsilon = 0.0;                          ///< cdf, pdf: see CurveBudget
     Conditional conditional = Conditional::energy; ///< uniform, cdf, pdf
     std::uint32_t gradient_knots = 0;              ///< cdf, pdf: extra marginal knots (Lawrence et al. 2005, eq. 5)
     Progress progress;
@@ -64,9 +52,8 @@ struct Fitted {
     EncodedTree tree;
 };
 
-/// Fits `target` (rows are theta, columns phi; integral > 0). Deterministic for any number of threads. Throws
-/// std::invalid_argument where the target has no energy or the goal is 0 cells, and std::runtime_error where the
-/// goal is out of reach: the message says what can be had.
+/// Fits `target` (rows are theta, columns phi) by uniform, cdf or pdf. Deterministic for any number of threads.
+/// Throws std::invalid_argument for other fits, and where the target has no energy.
 Fitted fit(const Target& target, const FitOptions& options);
 
 /// Fits uniform, cdf and pdf: marginal over the target's rows, one conditional over columns for each region

@@ -1,7 +1,6 @@
 #include "compress/local/fit_separate.h"
 
 #include "compress/local/light.h"
-#include "compress/local/whole.h"
 #include "compress/parallel.h"
 
 #include <acdf/local.h>
@@ -10,12 +9,12 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace acdf::compress {
 namespace {
 
-constexpr std::uint32_t kSide = 4;  // samples of a bin's normals along a side
-constexpr double kBytePrice = 1e-8; // of the sum of costs: knots are kept
+constexpr std::uint32_t kSide = 4; // samples of a bin's normals along a side
 
 /// Normals spread evenly over a bin, and how far any normal of the bin may be from the nearest of them (a sine).
 struct BinNormals {
@@ -134,44 +133,12 @@ OneBin target_of(const Target& target, const std::vector<LightPoint>& light, con
     return out;
 }
 
-/// The trees of bins.
-class Trees {
-public:
-    void append(const Cascade& tree) {
-        const auto base = static_cast<std::int32_t>(cascade_.curves.size());
-        cascade_.roots.push_back(static_cast<std::uint32_t>(base) + tree.roots.front());
-        for (Curve curve : tree.curves) {
-            for (std::int32_t& child : curve.children)
-                if (child >= 0) child += base;
-            cascade_.curves.push_back(std::move(curve));
-        }
-    }
-    /// Encodes all behind the curves of the environment; `stored` says which bins have one, in the order in which
-    /// they were appended.
-    EncodedTree encode(const std::vector<bool>& stored, const EncodedTree& environment) const {
-        EncodedTree tree =
-            encode_tree(cascade_, kBytePrice, std::numeric_limits<double>::infinity(), environment.bytes);
-        std::vector<std::uint32_t> roots(stored.size(), ACDF_NO_ROOT);
-        std::size_t next = 0;
-        for (std::size_t b = 0; b < stored.size(); ++b)
-            if (stored[b]) roots[b] = tree.roots[next++];
-        tree.roots = std::move(roots);
-        return tree;
-    }
-
-private:
-    Cascade cascade_;
-};
-
-std::uint64_t file_size(const FitOptions& options, const EncodedTree& tree) {
-    return options.file_size ? options.file_size(tree) : tree.bytes.size();
-}
-
-/// Trees of bins, and that of the environment at a quarter of the file.
-EncodedTree with_environment(const Target& target, const Trees& trees, const std::vector<bool>& stored,
-                             const FitOptions& options) {
-    const std::uint64_t others = file_size(options, trees.encode(stored, {}));
-    return trees.encode(stored, fit_whole(target, others / 3).tree);
+/// A curve that is never entered.
+Cascade dark_tree() {
+    Cascade out;
+    out.roots = {0};
+    out.curves.push_back({ACDF_AXIS_PHI, {}, {1.0}, {}, {}});
+    return out;
 }
 
 } // namespace
@@ -183,14 +150,12 @@ Target bin_target(const Target& target, const NormalBins& bins, std::size_t bin,
 SeparateFit fit_local_separate(const Target& target, const NormalBins& bins, BinTarget kind,
                                const FitOptions& options) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
-    if (options.fit == ACDF_FIT_VARIANCE)
-        throw std::invalid_argument("bins with trees of their own have no variance fit");
     const std::vector<LightPoint> light = light_points(target);
     SeparateFit out;
     out.shares.assign(bins.normals.size(), 0.0f);
     FitOptions own = options;
     own.progress = {};
-    Trees trees;
+    Cascade trees = fit(target, own).cascade;
     std::vector<bool> stored(bins.normals.size(), false);
     const double total = integral(target);
     for (std::size_t b = 0; b < stored.size(); ++b) {
@@ -198,16 +163,14 @@ SeparateFit fit_local_separate(const Target& target, const NormalBins& bins, Bin
         const OneBin bin = target_of(target, light, bins, b, kind);
         stored[b] = true;
         out.shares[b] = bin.share(total);
-        Flattened dark;
-        if (bin.target.total > 0.0) {
-            trees.append(fit(bin.target, own).cascade);
-        } else {
-            flatten_nothing(ACDF_AXIS_PHI, dark);
-            trees.append(dark.cascade);
-        }
+        append(bin.target.total > 0.0 ? fit(bin.target, own).cascade : dark_tree(), trees);
         if (options.progress) options.progress(double(b + 1) / double(stored.size()));
     }
-    out.tree = with_environment(target, trees, stored, options);
+    out.tree = encode_tree(trees);
+    const std::vector<std::uint32_t> of_trees = std::move(out.tree.roots); // the first is the environment's own
+    out.tree.roots.assign(stored.size(), ACDF_NO_ROOT);
+    for (std::size_t b = 0, next = 1; b < stored.size(); ++b)
+        if (stored[b]) out.tree.roots[b] = of_trees[next++];
     return out;
 }
 

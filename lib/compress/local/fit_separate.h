@@ -20,10 +20,8 @@ struct SeparateFit {
     std::vector<float> shares; ///< one a bin: the mean irradiance over the integral of the probe
 };
 
-/// `options` are those of one bin's tree, of the fits cdf, pdf and uniform. Deterministic for any number of
-/// threads. Throws std::invalid_argument where the target has no energy.
-///
-/// The environment's own tree is that of the variance fit, of a quarter of the file.
+/// `options` are those of one tree, of the fits cdf, pdf and uniform. Deterministic for any number of threads.
+/// Throws std::invalid_argument where the target has no energy.
 SeparateFit fit_local_separate(const Target& target, const NormalBins& bins, BinTarget kind,
                                const FitOptions& options);
 

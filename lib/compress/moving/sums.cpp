@@ -11,7 +11,7 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::uint32_t kTogether = 512; // columns whose squares are made before those of the next
+constexpr std::uint32_t kColumnsTogether = 512; // columns whose squares are made before those of the next
 
 } // namespace
 
@@ -168,7 +168,8 @@ void MovingSums::make(const Loop& loop, std::uint32_t first, std::uint32_t last)
         Scratch& scratch = *scratch_.back();
         scratch.forms.resize(shape_.bilinear ? 3 * shape_.planes : 0);
         for (RowForm& form : scratch.forms)
-            for (auto* of : {&form.even, &form.middle, &form.odd, &form.square, &form.lit}) of->resize(kTogether);
+            for (auto* of : {&form.even, &form.middle, &form.odd, &form.square, &form.lit})
+                of->resize(kColumnsTogether);
     }
     table_.make(loop);
 }
@@ -178,8 +179,8 @@ void MovingSums::make(const Loop& loop, std::uint32_t first, std::uint32_t last)
 /// A stretch of columns after the other: what rows share stays in the nearest cache.
 void MovingSums::square_rows(std::uint32_t first, std::uint32_t last, std::size_t slot) {
     Scratch& scratch = *scratch_[slot];
-    for (std::uint32_t begin = 0; begin < shape_.columns; begin += kTogether) {
-        const Columns columns{begin, std::min(kTogether, shape_.columns - begin)};
+    for (std::uint32_t begin = 0; begin < shape_.columns; begin += kColumnsTogether) {
+        const Columns columns{begin, std::min(kColumnsTogether, shape_.columns - begin)};
         for (RowForm& form : scratch.forms) form.row = -2;
         for (std::uint32_t r = first; r < last; ++r) square_row(r, columns, scratch);
     }

@@ -42,12 +42,12 @@ inline std::size_t end_of(const CurveShape& curve, std::size_t offset) {
     return rounded(offset, 2);
 }
 
-/// Byte offsets of all curves, the first of which begins at `begin`, and of the end. Links start at one byte (code
-/// 1; 0 where there are none); those that do not fit become wider, which moves what follows. `any_child(i, test)`
-/// returns whether a child of curve i passes.
+/// Byte offsets of all curves, and of the end. Links start at one byte (code 1; 0 where there are none); those that
+/// do not fit become wider, which moves what follows. `any_child(i, test)` returns whether a child of curve i
+/// passes.
 template <class AnyChild>
-std::vector<std::size_t> place(std::vector<CurveShape>& curves, const AnyChild& any_child, std::size_t begin = 0) {
-    std::vector<std::size_t> offset(curves.size() + 1, begin);
+std::vector<std::size_t> place(std::vector<CurveShape>& curves, const AnyChild& any_child) {
+    std::vector<std::size_t> offset(curves.size() + 1, 0);
     for (bool changed = true; changed;) {
         changed = false;
         for (std::size_t i = 0; i < curves.size(); ++i) offset[i + 1] = end_of(curves[i], offset[i]);

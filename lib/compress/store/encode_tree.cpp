@@ -17,7 +17,6 @@ namespace {
 std::vector<double> reach(const Cascade& cascade) {
     std::vector<double> reach(cascade.curves.size(), 0.0);
     for (std::uint32_t root : cascade.roots) reach[root] += 1.0 / static_cast<double>(cascade.roots.size());
-    for (const TileRoot& tile : cascade.tiles) reach[tile.curve] += tile.reach;
     for (std::size_t i = 0; i < cascade.curves.size(); ++i) {
         const Curve& curve = cascade.curves[i];
         for (std::size_t s = 0; s < curve.children.size(); ++s)
@@ -44,11 +43,6 @@ std::vector<Lows> range_lows(const Cascade& cascade) {
     zero.fill(0);
     std::vector<Lows> lows(cascade.curves.size(), unset);
     for (std::uint32_t root : cascade.roots) meet(lows[root], zero);
-    for (const TileRoot& tile : cascade.tiles) {
-        Lows low = zero;
-        std::copy(tile.low.begin(), tile.low.end(), low.begin());
-        meet(lows[tile.curve], low);
-    }
     for (std::size_t i = 0; i < cascade.curves.size(); ++i) {
         const Curve& curve = cascade.curves[i];
         for (std::size_t s = 0; s < curve.children.size(); ++s) {
@@ -68,10 +62,9 @@ struct Packed {
     std::uint32_t origin = 0; ///< what positions are counted from
 };
 
-Packed pack(const Curve& curve, const Lows& lows, double reach, double price, double most_ratio,
-            CurveShape& shape) {
+Packed pack(const Curve& curve, const Lows& lows, double reach, double price, CurveShape& shape) {
     if (curve.segments() > ACDF_MAX_SEGMENTS) throw std::invalid_argument("a curve of more than 1048575 segments");
-    Packed packed{&curve, quantize(curve.probability, reach, price, most_ratio), 0};
+    Packed packed{&curve, quantize(curve.probability, reach, price), 0};
     shape.segments = static_cast<std::uint32_t>(curve.segments());
     shape.probability_code = packed.probability.code;
     const std::uint32_t low = lows[curve.axis];
@@ -129,30 +122,26 @@ void write_curve(const Packed& packed, const CurveShape& shape, std::size_t at,
     block.align(2);
 }
 
-EncodedTree encode(const Cascade& cascade, double price, double most_ratio,
-                   const std::vector<std::uint8_t>& before) {
+EncodedTree encode(const Cascade& cascade, double price) {
     const std::vector<double> weight = reach(cascade);
     const std::vector<Lows> lows = range_lows(cascade);
     std::vector<Packed> packed;
     packed.reserve(cascade.curves.size());
     std::vector<CurveShape> shapes(cascade.curves.size());
     for (std::size_t i = 0; i < cascade.curves.size(); ++i)
-        packed.push_back(pack(cascade.curves[i], lows[i], weight[i], price, most_ratio, shapes[i]));
+        packed.push_back(pack(cascade.curves[i], lows[i], weight[i], price, shapes[i]));
     const auto any_child = [&](std::size_t i, const auto& test) {
         const std::vector<std::int32_t>& children = cascade.curves[i].children;
         return std::any_of(children.begin(), children.end(),
                            [&](std::int32_t child) { return child >= 0 && test(std::size_t(child)); });
     };
-    const std::vector<std::size_t> offset = place(shapes, any_child, before.size());
+    const std::vector<std::size_t> offset = place(shapes, any_child);
     if (offset.back() / 2 > 0xFFFFFFFFu) throw std::invalid_argument("a tree of more than 8 GiB");
 
     EncodedTree tree;
     tree.bytes.reserve(offset.back());
-    tree.bytes = before;
     for (std::size_t i = 0; i < packed.size(); ++i)
         write_curve(packed[i], shapes[i], offset[i], offset, Block(tree.bytes));
-    for (std::size_t i = 0; i < packed.size(); ++i)
-        tree.offsets.push_back(static_cast<std::uint32_t>(offset[i] / 2));
     for (std::uint32_t root : cascade.roots) tree.roots.push_back(static_cast<std::uint32_t>(offset[root] / 2));
     return tree;
 }
@@ -164,9 +153,10 @@ bool is_bare(const Curve& curve) {
            std::none_of(curve.children.begin(), curve.children.end(), refined);
 }
 
-/// The same with one bare curve for all roots that are one; where each curve of the old one is now.
-Cascade sharing_bare_roots(const Cascade& cascade, std::vector<std::uint32_t>& now) {
+/// The same with one bare curve for all roots that are one.
+Cascade sharing_bare_roots(const Cascade& cascade) {
     Cascade out;
+    std::vector<std::uint32_t> now; // where each curve is
     std::vector<char> root(cascade.curves.size(), 0);
     for (const std::uint32_t r : cascade.roots) root[r] = 1;
     for (const Curve& curve : cascade.curves) // a child stays behind its parents
@@ -187,27 +177,16 @@ Cascade sharing_bare_roots(const Cascade& cascade, std::vector<std::uint32_t>& n
         for (std::int32_t& child : curve.children)
             if (child >= 0) child = static_cast<std::int32_t>(now[static_cast<std::size_t>(child)]);
     for (const std::uint32_t r : cascade.roots) out.roots.push_back(now[r]);
-    for (TileRoot tile : cascade.tiles) {
-        tile.curve = now[tile.curve];
-        out.tiles.push_back(tile);
-    }
     return out;
 }
 
 } // namespace
 
-EncodedTree encode_tree(const Cascade& cascade, double price, double most_ratio,
-                        const std::vector<std::uint8_t>& before) {
-    EncodedTree tree = encode(cascade, price, most_ratio, before);
-    // The curves in `before` keep to the same limit.
-    const std::size_t one_more = before.empty() ? 1 : 0;
-    if (cascade.curves.size() <= (tree.bytes.size() - before.size()) / 4 + one_more) return tree;
+EncodedTree encode_tree(const Cascade& cascade, double price) {
+    EncodedTree tree = encode(cascade, price);
+    if (cascade.curves.size() <= tree.bytes.size() / 4 + 1) return tree;
     // Many bins of one cell, whose curves have two bytes: readers take no more curves than a quarter of the bytes.
-    std::vector<std::uint32_t> now;
-    EncodedTree shared = encode(sharing_bare_roots(cascade, now), price, most_ratio, before);
-    tree.offsets.clear();
-    for (const std::uint32_t curve : now) tree.offsets.push_back(shared.offsets[curve]);
-    return {std::move(shared.bytes), std::move(shared.roots), std::move(tree.offsets)};
+    return encode(sharing_bare_roots(cascade), price);
 }
 
 } // namespace acdf::compress

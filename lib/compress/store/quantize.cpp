@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace acdf::compress {
 namespace {
@@ -21,15 +22,6 @@ QuantizedCurve accumulate(const std::vector<std::uint64_t>& shares, std::uint32_
         out.cumulative.push_back(static_cast<std::uint32_t>(sum));
     }
     return out;
-}
-
-/// The largest factor by which a share is below its probability.
-double worst_ratio(const std::vector<double>& probability, const std::vector<std::uint64_t>& shares) {
-    const double maximum = static_cast<double>(std::accumulate(shares.begin(), shares.end(), std::uint64_t{0}));
-    double worst = 1.0;
-    for (std::size_t i = 0; i < probability.size(); ++i)
-        if (shares[i] > 0) worst = std::max(worst, probability[i] * maximum / static_cast<double>(shares[i]));
-    return worst;
 }
 
 } // namespace
@@ -105,29 +97,24 @@ double quantization_excess(const std::vector<double>& probability, const std::ve
     return excess;
 }
 
-namespace {
-
-Rounding rounding_of(const std::vector<double>& probability, const std::vector<std::uint64_t>& shares) {
-    return {quantization_excess(probability, shares), worst_ratio(probability, shares)};
-}
-
-} // namespace
-
-Rounding rounding_to(const std::vector<double>& probability, std::uint32_t code) {
-    return rounding_of(probability, apportion(probability, kMaximum[code], kSmallest[code]));
-}
-
-QuantizedCurve quantize(const std::vector<double>& probability, double reach, double price, double most_ratio) {
+QuantizedCurve quantize(const std::vector<double>& probability, double reach, double price) {
     const auto lit = static_cast<std::uint64_t>(
         std::count_if(probability.begin(), probability.end(), [](double p) { return p > 0.0; }));
-    std::vector<std::uint64_t> shares[3]; // of the widths that were looked at
-    const auto shares_of = [&](std::uint32_t code) -> const std::vector<std::uint64_t>& {
-        if (shares[code].empty()) shares[code] = apportion(probability, kMaximum[code], kSmallest[code]);
-        return shares[code];
-    };
-    const std::uint32_t code = best_width(probability.size() - 1, lit, reach, price, most_ratio,
-                                          [&](std::uint32_t c) { return rounding_of(probability, shares_of(c)); });
-    return accumulate(shares_of(code), code);
+    std::uint32_t best = 0;
+    std::vector<std::uint64_t> best_shares;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t code = 0; code < 3; ++code) {
+        if (lit > kMaximum[code]) continue;
+        const double bytes = static_cast<double>(probability.size() - 1) * static_cast<double>(1u << code);
+        if (bytes * price >= least) break; // wider ones cost more even without any excess
+        std::vector<std::uint64_t> shares = apportion(probability, kMaximum[code], kSmallest[code]);
+        const double cost = bytes * price + reach * quantization_excess(probability, shares);
+        if (cost >= least) continue;
+        least = cost;
+        best = code;
+        best_shares = std::move(shares);
+    }
+    return accumulate(best_shares, best);
 }
 
 } // namespace acdf::compress

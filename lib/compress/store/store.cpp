@@ -194,24 +194,10 @@ Description environment_description(std::uint32_t columns, std::uint32_t rows,
     return d;
 }
 
-std::vector<Chunk> shared_chunks(const StoredRows& rows) {
-    AcdfTiles header = {};
-    header.tile_count = static_cast<std::uint32_t>(rows.splits.size() + 1);
-    header.root_count = static_cast<std::uint32_t>(rows.tile_roots.size());
-    header.row_count = rows.row_count;
-    std::copy(rows.codebook.begin(), rows.codebook.end(), header.codebook);
-    Chunk tiles{ACDF_CHUNK_TILES, {}};
-    append(tiles.bytes, header);
-    for (const AcdfSplit& split : rows.splits) append(tiles.bytes, split);
-    for (std::uint32_t root : rows.tile_roots) append(tiles.bytes, root);
-    return {std::move(tiles), {ACDF_CHUNK_ROWS, rows.codes}};
-}
-
-Chunk local_chunk(float cosine_share, const std::vector<AcdfBrightTile>& bright_tiles) {
-    Chunk chunk{ACDF_CHUNK_LOCAL, {}};
-    append(chunk.bytes, AcdfLocalHeader{cosine_share, static_cast<std::uint32_t>(bright_tiles.size())});
-    for (const AcdfBrightTile& light : bright_tiles) append(chunk.bytes, light);
-    return chunk;
+Chunk local_chunk(float cosine_share) {
+    const AcdfLocalHeader header = {cosine_share, 0};
+    const auto* data = reinterpret_cast<const std::uint8_t*>(&header);
+    return {ACDF_CHUNK_LOCAL, {data, data + sizeof header}};
 }
 
 Chunk partner_chunk(const Partner& partner, float recommended_light_share,

@@ -7,7 +7,6 @@
 
 #include <acdf/layout.h>
 
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,35 +49,19 @@ struct Description {
 Description environment_description(std::uint32_t columns, std::uint32_t rows,
                                     AcdfParameterization parameterization = ACDF_PARAM_LATLONG);
 
-/// The bytes of chunk TREE, and offsets in it in units of two bytes: of each root, and of each curve.
+/// The bytes of chunk TREE, and the offset of each root in it, in units of two bytes.
 struct EncodedTree {
     std::vector<std::uint8_t> bytes;
     std::vector<std::uint32_t> roots;
-    std::vector<std::uint32_t> offsets; ///< of every curve
 };
 
 /// Quantizes and packs the curves in the order given. Probabilities get the width at which bytes, at `price`
-/// each, and what rounding adds to E[(f/p)^2] cost least together. `most_ratio`: see quantize. `before`: a chunk
-/// TREE, behind whose curves these stand. Throws std::invalid_argument where the cascade breaks a limit of the
-/// format.
-EncodedTree encode_tree(const Cascade& cascade, double price = 1e-8,
-                        double most_ratio = std::numeric_limits<double>::infinity(),
-                        const std::vector<std::uint8_t>& before = {});
-
-/// What the bins of local environments share, and a row for each.
-struct StoredRows {
-    std::vector<AcdfSplit> splits;         ///< in preorder
-    std::vector<std::uint32_t> tile_roots; ///< one a tile; or empty: all tiles are cells
-    std::vector<std::uint16_t> codebook;   ///< 256
-    std::uint32_t row_count = 0;
-    std::vector<std::uint8_t> codes; ///< row_count x splits
-};
-
-/// Chunks TILE and ROWS.
-std::vector<Chunk> shared_chunks(const StoredRows& rows);
+/// each, and what rounding adds to E[(f/p)^2] cost least together. Throws std::invalid_argument where the cascade
+/// breaks a limit of the format.
+EncodedTree encode_tree(const Cascade& cascade, double price = 1e-8);
 
 /// Chunk LOCL.
-Chunk local_chunk(float cosine_share, const std::vector<AcdfBrightTile>& bright_tiles);
+Chunk local_chunk(float cosine_share);
 
 /// Chunk COMP. `records`: none, or one a bin.
 Chunk partner_chunk(const Partner& partner, float recommended_light_share,

@@ -15,10 +15,11 @@
 namespace acdf::compress {
 namespace {
 
-/// Splits that cells distinguish: with more of them there are fewer cells (docs/visibility.md).
-constexpr std::uint32_t kColumns = 127;
-/// The same for files with portals, through which most samples are taken: there cells gain more than columns do.
-constexpr std::uint32_t kColumnsBesidePortals = 31;
+/// Columns of a chunk are so many times the root of its bytes: with more of them there are fewer cells, and both
+/// count (docs/notes/visibility.md).
+constexpr double kColumns = 0.147, kMostColumns = 127.0;
+/// Of files with portals at most, through which most samples are taken: there cells gain more than columns do.
+constexpr double kColumnsBesidePortals = 31.0;
 /// Cells that have the same columns, in the mean.
 constexpr std::uint64_t kCellsOfRegion = 200;
 /// How far cells are mixed, of the smaller one at their border.
@@ -100,6 +101,11 @@ private:
     std::uint64_t next_ = 0;
 };
 
+std::uint32_t usual_columns(std::uint64_t bytes, const PortalSet* portals) {
+    const double most = portals ? kColumnsBesidePortals : kMostColumns;
+    return static_cast<std::uint32_t>(std::min(kColumns * std::sqrt(double(bytes)), most));
+}
+
 /// Cells and regions that fill a chunk.
 struct Counts {
     std::uint32_t cells = 1, regions = 1;
@@ -162,8 +168,7 @@ std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, co
         if (progress) progress(share);
     };
     const PortalSet* portals = scene.portals.get();
-    const std::uint32_t usual = portals ? kColumnsBesidePortals : kColumns;
-    const VisibilityParts coarse(local, bins, size.columns > 0 ? size.columns : usual);
+    const VisibilityParts coarse(local, bins, size.columns > 0 ? size.columns : usual_columns(size.bytes, portals));
     const std::uint64_t width = 1 + coarse.column_count();
     const Counts counts = portals ? counts_for(size.bytes - std::min<std::uint64_t>(size.bytes, portals->bytes()),
                                                width + portals->row_bytes(), coarse.column_count())

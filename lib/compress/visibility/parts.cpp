@@ -166,7 +166,8 @@ std::vector<VisibilityParts::Tile> VisibilityParts::tiles(std::size_t part) cons
 
 bool VisibilityParts::find(const float direction[3], std::uint32_t& part) const {
     std::uint32_t square[2];
-    if (!acdf_local_square(&grid_, direction, square)) return false;
+    double position[2];
+    if (!acdf_grid_square(&grid_, direction, square, position)) return false;
     const std::uint32_t tile = acdf_rows_find_tile(&rows_, square);
     part = static_cast<std::uint32_t>(std::upper_bound(first_.begin(), first_.end(), tile) - first_.begin() - 1);
     return true;

@@ -1,6 +1,6 @@
 #include "compress/visibility/portal_sides.h"
 
-#include "compress/fit/tiles.h"
+#include "compress/boxes.h"
 #include "compress/local/light.h"
 #include "compress/parallel.h"
 

@@ -112,7 +112,7 @@ double moment_of_others(const Region& region, const VisibilityLight& light, cons
 VisibilityCaution best_caution(const Region& region, const VisibilityLight& light) {
     VisibilityCaution best;
     double least = -1.0;
-    for (const float floor : {0.005f, 0.01f, 0.03f, 0.1f})
+    for (const float floor : {0.001f, 0.003f, 0.01f, 0.03f, 0.1f})
         for (const float prior : {0.5f, 1.0f, 2.0f}) {
             const VisibilityCaution caution{floor, prior};
             const double moment = moment_of_others(region, light, caution);

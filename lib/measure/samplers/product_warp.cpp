@@ -93,15 +93,14 @@ public:
         if (point_.what == ACDF_LOCAL_NOTHING || !acdf_grid_square(&grid, direction, square, position))
             return false;
         acdf_sphere_ranges(grid.columns, grid.rows, range);
-        if (!find_any(square, range, strata)) return false;
+        if (!find(square, range, strata)) return false;
         acdf_grid_fractions(&grid, direction, position, range, t);
         for (int axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t[axis]);
         return true;
     }
 
 private:
-    bool find_any(const std::uint32_t* square, AcdfRange* range, AcdfStratum* strata) const {
-        if (point_.what == ACDF_LOCAL_BLEND) return find(square, range, strata);
+    bool find(const std::uint32_t* square, AcdfRange* range, AcdfStratum* strata) const {
         if (point_.what == ACDF_LOCAL_ROWS) {
             AcdfSpan box[2];
             const double p = acdf_rows_strata(local_.rows_of_normals, local_.environment.halved, &point_.by.rows,
@@ -112,29 +111,6 @@ private:
         if (local_.environment.halved)
             return acdf_environment_halved_find(&local_.environment, square, range, strata) > 0.0;
         return acdf_tree_find(local_.environment.tree, point_.by.root, square, range, strata) > 0.0;
-    }
-
-    /// Bright tiles come before the mixture in u[0] (acdf_local_sample_bright_tile).
-    bool find(const std::uint32_t* square, AcdfRange* range, AcdfStratum* strata) const {
-        double probability;
-        const std::uint32_t tile =
-            acdf_blend_find_tile(&local_.blend, &point_.mix, square, range, strata, &probability);
-        if (probability > 0.0) {
-            const double share = point_.bright_tiles / point_.sum;
-            strata[0] = {share + (1.0 - share) * strata[0].low, (1.0 - share) * strata[0].width};
-        } else {
-            const AcdfScaledNormal normal = acdf_local_scaled_normal(&point_);
-            double below = 0.0, weight = 0.0;
-            std::uint32_t k = 0;
-            for (; k < local_.bright_tile_count && local_.bright_tiles[k].tile != tile; ++k)
-                below += std::max(0.0, acdf_bright_tile_weight(&local_.bright_tiles[k], &normal));
-            if (k < local_.bright_tile_count) weight = acdf_bright_tile_weight(&local_.bright_tiles[k], &normal);
-            if (!(weight > 0.0)) return false;
-            strata[0] = {below / point_.sum, weight / point_.sum};
-            strata[1] = {0.0, 1.0};
-        }
-        const std::uint32_t root = local_.blend.roots ? local_.blend.roots[tile] : ACDF_NO_ROOT;
-        return root == ACDF_NO_ROOT || acdf_tree_find(local_.blend.tree, root, square, range, strata) > 0.0;
     }
 
     AcdfLocal local_;

@@ -1,6 +1,6 @@
 #include "measure/samplers/stratification.h"
 
-#include "compress/fit/octahedral_boxes.h"
+#include "compress/boxes.h"
 #include "compress/sum.h"
 #include "measure/samplers/probe_grid.h"
 

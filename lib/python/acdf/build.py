@@ -222,7 +222,6 @@ def build_local(
     max_weight: float = 0.0,
     cosine_share: float = 0.0,
     sharing: bool = True,
-    shape: str = "auto",
     mis: Optional[str] = None,
     heuristic: Optional[str] = None,
     shares: Tuple[float, float] = (1.0, 1.0),
@@ -240,8 +239,6 @@ def build_local(
     cosine_share: of samples that are taken around the normal instead, in [0, 0.99].
     sharing: bins share tiles; else each has a tree of its own, of the fits "cdf", "pdf" or "uniform".
     mis: "none" or "cosine".
-    shape: "halvings", one tree with a row of codes for each bin: the least noise for its bytes; "small", curves in tiles, for
-        max_weight and MIS partners other than the cosine; "auto" makes halvings, or small where options ask for what that has not.
     """
     return open(_acdf.build_local(image, _options({k: v for k, v in locals().items() if k != "image"})))
 

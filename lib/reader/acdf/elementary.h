@@ -119,14 +119,6 @@ ACDF_INLINE void acdf_as_given(const float v[3], float out[3]) {
 
 #define ACDF_PI 3.14159265358979323846
 
-#ifdef ACDF_ON_GPU
-/* Words that are loaded at once: where each thread reads elsewhere, it is loads that count, not bytes. (Kernels are
- * C++.) */
-typedef struct alignas(16) AcdfFourWords {
-    uint32_t x, y, z, w;
-} AcdfFourWords;
-#endif
-
 /* Polynomials of degree 7 and 3 in q, summed as a tree: short chains of dependent operations. */
 ACDF_FN double acdf_polynomial4(double q, double c0, double c1, double c2, double c3) {
     return (c0 + q * c1) + q * q * (c2 + q * c3);

@@ -170,7 +170,7 @@ ACDF_FN void acdf_mixed_begin(AcdfMixed* sky) {
  * NaN, too. */
 ACDF_FN void acdf_indexed_at(const AcdfIndexed* file, const double* coordinates, AcdfMixed* out) {
     double between[3], suns[ACDF_MOST_MIXED][3], radii[ACDF_MOST_MIXED], light = 0.0, in_cone = 0.0;
-    uint32_t first[3], axis, corner, corners = 1u << file->axes, left;
+    uint32_t first[3], axis, corner, corners = 1u << file->axes, left, whole[ACDF_MOST_MIXED] = {0};
     const double* of_axis = file->coordinates;
     out->top = file->top;
     out->grid.columns = file->columns;
@@ -201,7 +201,8 @@ ACDF_FN void acdf_indexed_at(const AcdfIndexed* file, const double* coordinates,
         out->map[out->count] = number;
         out->weight[out->count++] = weight * (1.0 - map->sun_share);
     }
-    acdf_whole_weights(out->weight, out->count);
+    acdf_whole_weights(out->weight, out->count, whole);
+    for (corner = 0; corner < out->count; ++corner) out->weight[corner] = (double)whole[corner];
     out->total = light * file->total;
     out->sun_share = in_cone / light;
     out->cone.reach = 0.0;

@@ -1,5 +1,5 @@
 /* Sampling and evaluating local environment maps: for every normal n the light that arrives above its horizon,
- * times the cosine (Lawrence et al. 2005, §7.1). One freestanding header over acdf/blend.h,
+ * times the cosine (Lawrence et al. 2005, §7.1). One freestanding header over acdf/sample.h,
  * valid C99, C++17 and CUDA/HIP/SYCL, with the same contract.
  *
  * Frame and pdfs are those of acdf/sample.h. Normals need not be of unit length; a normal that is zero or NaN
@@ -28,73 +28,6 @@ ACDF_INLINE AcdfDirectionSample acdf_local_rows_sample(const AcdfLocal* local, c
     return acdf_rows_direction(tree, grid, tile, share, u);
 }
 
-/* What random numbers of bright tiles and mixture are of all that the mixture gives. */
-ACDF_INLINE void acdf_local_of_mixture(const AcdfLocalPoint* point, const double* u, double from[2]) {
-    from[0] = u[0] * point->sum - point->bright_tiles;
-    from[1] = u[1] * acdf_mixture_sum(&point->mix);
-}
-
-/* The range of a tile to which the mixture gives `given` of all; returns that as its share. */
-ACDF_INLINE double acdf_local_sampled_tile(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile,
-                                           double given, AcdfRange* range) {
-    acdf_tile_range(acdf_local_tile(local->tables, tile), range);
-    return acdf_positive(given / acdf_mixture_sum(&point->mix));
-}
-
-/* acdf_local_sample_tile by tables; u[0] is that of bright tiles and mixture. */
-ACDF_INLINE uint32_t acdf_local_table_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
-                                           AcdfRange* range, double* probability) {
-    const AcdfTileTables* tables = &local->tables->tiles;
-    double from[2], given;
-    uint32_t tile;
-    acdf_local_of_mixture(point, u, from);
-    tile = acdf_tile_sample(acdf_local_words(local->tables), tables, &point->mix, point->by.tabled.codes,
-                            tables->root, from, u, &given);
-    *probability = acdf_local_sampled_tile(local, point, tile, given, range);
-    return tile;
-}
-
-/* Samples a cell of a tile of a probability; returns that of the cell. Roots alone are nearer than the tiles'
- * records, which not all samples have asked for. */
-ACDF_INLINE double acdf_local_sample_inside(const AcdfLocal* local, uint32_t tile, double probability, double* u,
-                                            AcdfRange* range) {
-    const uint32_t root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
-    if (root == ACDF_NO_ROOT) return probability;
-    return acdf_positive(probability *
-                         acdf_short_tree_sample(local->blend.tree, local->environment.tree_units, root, u, range));
-}
-
-/* Samples a cell of bright tiles and mixture; u and range as in acdf_tree_sample. Returns its probability, > 0. */
-ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
-                                       AcdfRange* range) {
-    double probability;
-    uint32_t tile;
-    const int tabled = acdf_local_tabled(local) && acdf_local_samples_mixture(point, u[0]);
-    const AcdfBrightTile* light = tabled ? 0 : acdf_local_sample_bright_tile(local, point, u, &probability);
-    if (light) {
-        acdf_light_range(light, range);
-        probability = acdf_positive(probability / point->sum);
-        tile = light->tile;
-    } else {
-        tile = tabled ? acdf_local_table_tile(local, point, u, range, &probability)
-                      : acdf_blend_sample_tile(&local->blend, &point->mix, u, range, &probability);
-        probability = acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * probability);
-    }
-    return acdf_local_sample_inside(local, tile, probability, u, range);
-}
-
-/* The direction that what is left of the random numbers picks in a cell of probability p. */
-ACDF_INLINE AcdfDirectionSample acdf_local_direction_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                            const AcdfGrid* grid, const AcdfRange range[2],
-                                                            const double u[2], double p) {
-    AcdfDirectionSample out;
-    if (point->what != ACDF_LOCAL_BLEND || !acdf_local_direction_by_tables(local, grid, range, u, out.direction))
-        return acdf_grid_position(grid, range, u, p);
-    out.pdf = local->tables->octahedral ? acdf_fold_pdf(grid, range, p)
-                                        : acdf_row_pdf(acdf_local_heights(local->tables), grid->columns, range, p);
-    return out;
-}
-
 /* A direction around the normal with pdf cos / pi: the unit normal plus a point of the unit sphere. */
 ACDF_FN void acdf_cosine_direction(const float normal[3], double u0, double u1, float direction[3]) {
     const double nx = normal[0], ny = normal[1], nz = normal[2], length = sqrt(nx * nx + ny * ny + nz * nz);
@@ -114,17 +47,13 @@ ACDF_FN void acdf_cosine_direction(const float normal[3], double u0, double u1, 
 /* Samples by rows, or a tree; u[0] and u[1] in [0, 1]. */
 ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                       double* u) {
-    const AcdfGrid grid = acdf_environment_grid(&local->environment);
-    AcdfRange range[2];
-    double p;
-    if (point->what == ACDF_LOCAL_ROWS) return acdf_local_rows_sample(local, point, &grid, u);
-    if (local->environment.halved) return acdf_environment_halved_sample(&local->environment, u[0], u[1]);
-    acdf_sphere_ranges(grid.columns, grid.rows, range);
-    p = point->what == ACDF_LOCAL_BLEND
-            ? acdf_local_blend_sample(local, point, u, range)
-            : acdf_short_tree_sample(local->environment.tree, local->environment.tree_units, point->by.root, u,
-                                     range);
-    return acdf_local_direction_sample(local, point, &grid, range, u, p);
+    if (point->what == ACDF_LOCAL_ROWS) {
+        const AcdfGrid grid = acdf_environment_grid(&local->environment);
+        return acdf_local_rows_sample(local, point, &grid, u);
+    } else {
+        const AcdfEnvironment tree = acdf_local_tree(local, point);
+        return acdf_environment_sample(&tree, u[0], u[1]);
+    }
 }
 
 /* Samples by the row of a position or through its portals, of which it sees at least one. The pdf is that of the
@@ -176,7 +105,7 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
     AcdfNormalBins bins;
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
-    if (point.what >= ACDF_LOCAL_BLEND && acdf_partner_records(local->partner) &&
+    if (point.what == ACDF_LOCAL_ROWS && acdf_partner_records(local->partner) &&
         acdf_local_bins(local, normal, &bins)) { /* shares hold the light that is left to the file */
         const AcdfPartnerRecord* records = acdf_partner_records(local->partner);
         double sum = 0.0;
@@ -184,7 +113,7 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
         for (i = 0; i < bins.count; ++i) sum += bins.weight[i] * (double)records[bins.bin[i]].flux;
         return acdf_clamp(local->environment.total * sum / point.length, 0.0, 0x1.fffffffffffffp1023);
     }
-    if (point.what >= ACDF_LOCAL_BLEND)
+    if (point.what == ACDF_LOCAL_ROWS)
         return acdf_clamp(local->environment.total * point.sum / point.length, 0.0, 0x1.fffffffffffffp1023);
     if (point.what == ACDF_LOCAL_NOTHING || !acdf_local_bins(local, normal, &bins)) return 0.0;
     if (local->rows_of_normals || point.by.root == local->environment.root) return local->environment.total;
@@ -209,7 +138,7 @@ ACDF_FN float acdf_local_recommended_share(const AcdfLocal* local, const float n
 ACDF_FN int acdf_local_stored(const AcdfLocal* local, const float normal[3]) {
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
-    return point.what >= ACDF_LOCAL_BLEND ||
+    return point.what == ACDF_LOCAL_ROWS ||
            (point.what == ACDF_LOCAL_TREE && !local->rows_of_normals && point.by.root != local->environment.root);
 }
 

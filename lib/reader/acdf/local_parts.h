@@ -2,7 +2,6 @@
 #ifndef ACDF_LOCAL_PARTS_H
 #define ACDF_LOCAL_PARTS_H
 
-#include <acdf/local_tables.h>
 #include <acdf/normal_rows.h>
 #include <acdf/normals.h>
 #include <acdf/portals.h>
@@ -12,20 +11,16 @@ extern "C" {
 #endif
 
 typedef struct AcdfLocal {
-    AcdfBlend blend;             /* blend.tiles is null where each bin has a tree of its own */
     AcdfEnvironment environment; /* the 2D table that is always there */
     const AcdfBin* bins;
-    const AcdfBrightTile* bright_tiles; /* of the blend */
-    uint32_t bright_tile_count;
-    uint32_t subdivisions; /* of an octahedron's edge; 0: bins are cells of a lat-long grid */
+    uint32_t subdivisions; /* of an octahedron's edge; 0: bins are cells of a lat-long grid, and have curves */
     uint32_t columns;      /* of that grid */
     uint32_t rows;
     double cosine_share;
-    const AcdfLocalTables* tables;         /* runtime tables; null: splits are traversed */
     const AcdfPartner* partner;            /* null: to be used alone */
     AcdfVisibilityTable visibility;        /* its header is null where there are no visibility cells */
     AcdfPortalTable portals;               /* its header is null where there are none */
-    const AcdfNormalRows* rows_of_normals; /* one tree of halvings; null: curves */
+    const AcdfNormalRows* rows_of_normals; /* one tree of halvings; null: curves, each bin a tree of its own */
 } AcdfLocal;
 
 ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {
@@ -33,17 +28,10 @@ ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfN
     return acdf_latlong_bins(local->columns, local->rows, normal, out);
 }
 
-/* What serves a normal: nothing, a tree of its own (or the environment's), bright tiles and what bins share, or
- * rows of a tree of halvings. Made once for a shading point, it serves all samples there. It
- * points into the memory of the AcdfLocal that made it: not for one that was opened otherwise, or moved since. */
-enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND, ACDF_LOCAL_ROWS };
-
-/* Rows of a blend by runtime tables. */
-typedef struct AcdfTabledRows {
-    const AcdfFacet* facet;                   /* that of the normal; null: tables have none */
-    const uint8_t* codes[ACDF_NORMALS_MIXED]; /* the rows in the tables */
-    const double* parts[ACDF_NORMALS_MIXED];  /* what they give to each tile, where tables have that */
-} AcdfTabledRows;
+/* What serves a normal: nothing, a tree of its own (or the environment's), or rows of a tree of halvings. Made once
+ * for a shading point, it serves all samples there. It points into the memory of the AcdfLocal that made it: not
+ * for one that was opened otherwise, or moved since. */
+enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_ROWS };
 
 /* Where a position lies: by these numbers all else that it needs is found in the file again. */
 typedef struct AcdfLocalPlace {
@@ -54,22 +42,18 @@ typedef struct AcdfLocalPlace {
 
 typedef struct AcdfLocalPoint {
     uint8_t what;
-    uint8_t cells;             /* of visibility that are mixed; 0: the position is not known, or does not matter */
-    uint8_t portals;           /* that the position sees */
-    float surface[3];          /* the normal as given */
-    double scale;              /* of that to the weighted sum of the corners of its bins */
-    double length;             /* of that sum */
-    double bright_tiles;       /* sum of the weights of the bright tiles */
-    double sum;                /* of all weights */
-    AcdfMixture mix;           /* of the blend; the weights are those that reach the position */
-    union {                    /* what serves it has one of these */
-        uint32_t root;         /* ACDF_LOCAL_TREE */
-        AcdfTabledRows tabled; /* ACDF_LOCAL_BLEND */
-        AcdfRowMixture rows;   /* ACDF_LOCAL_ROWS */
+    uint8_t cells;           /* of visibility that are mixed; 0: the position is not known, or does not matter */
+    uint8_t portals;         /* that the position sees */
+    float surface[3];        /* the normal as given */
+    double length;           /* of the weighted sum of the corners of its bins */
+    double sum;              /* of all weights */
+    union {                  /* what serves it has one of these */
+        uint32_t root;       /* ACDF_LOCAL_TREE */
+        AcdfRowMixture rows; /* ACDF_LOCAL_ROWS */
     } by;
     AcdfLocalPlace place; /* of ACDF_LOCAL_ROWS in visibility cells */
 } AcdfLocalPoint;
-ACDF_STATIC_ASSERT(sizeof(AcdfLocalPoint) <= 384); /* renderers keep many */
+ACDF_STATIC_ASSERT(sizeof(AcdfLocalPoint) <= 256); /* renderers keep many */
 
 #ifdef __cplusplus
 }

@@ -49,22 +49,10 @@ static inline void acdf_move_environment(AcdfEnvironment* environment, const Acd
     ACDF_MOVE(AcdfPartner, environment->partner);
 }
 
-/* The same of what bins share: a part of the following. */
-static inline void acdf_move_blend(AcdfBlend* blend, const AcdfMove* moves, int count) {
-    ACDF_MOVE(AcdfTiles, blend->tiles);
-    ACDF_MOVE(AcdfSplit, blend->splits);
-    ACDF_MOVE(uint32_t, blend->roots);
-    ACDF_MOVE(uint8_t, blend->rows);
-    ACDF_MOVE(uint8_t, blend->tree);
-}
-
 /* The same of a local environment. */
 static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int count) {
-    acdf_move_blend(&local->blend, moves, count);
     acdf_move_environment(&local->environment, moves, count);
     ACDF_MOVE(AcdfBin, local->bins);
-    ACDF_MOVE(AcdfBrightTile, local->bright_tiles);
-    ACDF_MOVE(AcdfLocalTables, local->tables);
     ACDF_MOVE(AcdfPartner, local->partner);
     ACDF_MOVE(AcdfVisibility, local->visibility.header);
     ACDF_MOVE(AcdfVisibilitySplit, local->visibility.splits);

@@ -1,5 +1,5 @@
 /* Local environment maps and BRDFs on one tree of halvings: at its top each stored normal or view has a row of
- * codes of its own, below that all share (SPEC.md §10.6). Those between sample from a mixture of rows. Part of
+ * codes of its own, below that all share (SPEC.md §9). Those between sample from a mixture of rows. Part of
  * acdf/local.h and acdf/brdf.h.
  *
  * Where codes of rows end there are tiles, numbered in the order of the tree. Of each row the steps of random
@@ -48,7 +48,7 @@ typedef struct AcdfRowMixture {
     int count; /* at least one, where there is a mixture */
     const uint32_t* before[ACDF_MOST_ROWS_MIXED];
     const uint32_t* ends[ACDF_MOST_ROWS_MIXED];
-    double weight[ACDF_MOST_ROWS_MIXED];
+    uint32_t weight[ACDF_MOST_ROWS_MIXED];
 } AcdfRowMixture;
 
 ACDF_INLINE const AcdfRowSplit* acdf_row_splits(const AcdfNormalRows* rows) {
@@ -64,7 +64,7 @@ ACDF_INLINE const uint32_t* acdf_row_before(const AcdfNormalRows* rows, uint32_t
     return ACDF_TOP_ARRAY(uint32_t, rows, rows->before) + (size_t)row * rows->stride;
 }
 
-/* Mixes rows by weights, some > 0. */
+/* Mixes rows by weights, which are all > 0. */
 ACDF_INLINE void acdf_rows_mix(const AcdfNormalRows* rows, const uint32_t* row, const double* weight, int count,
                                AcdfRowMixture* out) {
     uint32_t at;
@@ -73,17 +73,19 @@ ACDF_INLINE void acdf_rows_mix(const AcdfNormalRows* rows, const uint32_t* row, 
     for (i = 0; i < count; ++i) {
         out->before[i] = acdf_row_before(rows, row[i]);
         out->ends[i] = ACDF_TOP_ARRAY(uint32_t, rows, rows->ends) + (size_t)row[i] * rows->group_stride;
-        out->weight[i] = weight[i];
         for (at = 0; at <= rows->groups; at += 16u) ACDF_PREFETCH(out->ends[i] + at);
     }
-    acdf_whole_weights(out->weight, (uint32_t)count);
+    acdf_whole_weights(weight, (uint32_t)count, out->weight);
 }
+
+/* What a row has of the samples of a mixture that it is the k-th of, out of ACDF_WEIGHTS. */
+ACDF_INLINE double acdf_rows_weight(const AcdfRowMixture* mix, int k) { return (double)(int32_t)mix->weight[k]; }
 
 /* What a mixture has of the steps that stand at a place of its rows: a whole number, out of 2^52. */
 ACDF_INLINE double acdf_rows_sum(const AcdfRowMixture* mix, const uint32_t* const* rows, uint32_t at) {
-    double sum = mix->weight[0] * (double)rows[0][at];
+    double sum = acdf_rows_weight(mix, 0) * (double)rows[0][at];
     int k;
-    for (k = 1; k < mix->count; ++k) sum += mix->weight[k] * (double)rows[k][at];
+    for (k = 1; k < mix->count; ++k) sum += acdf_rows_weight(mix, k) * (double)rows[k][at];
     return sum;
 }
 /* What it gives to tiles [first, end). */

@@ -29,7 +29,6 @@
 struct AcdfFile;
 #ifndef ACDF_ENVIRONMENT_ONLY
 struct AcdfMove;
-struct AcdfBlend;
 #endif
 
 namespace acdf {
@@ -148,8 +147,6 @@ public:
     /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
     /// many there are (acdf/moved.h).
     int memory(AcdfMove* moves) const noexcept;
-    /// What bins share; `tiles` is null where each has a tree of its own.
-    const AcdfBlend& blend() const noexcept;
 #endif
 
 private:

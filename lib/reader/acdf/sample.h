@@ -36,7 +36,6 @@ typedef struct AcdfEnvironment {
     uint32_t parameterization;    /* ACDF_PARAM_OCTAHEDRAL: u and v of the square; all else: phi and theta */
     const AcdfHalvedTree* halved; /* null: curves */
     const AcdfPartner* partner;   /* null: to be used alone */
-    uint32_t tree_units;          /* of two bytes, that `tree` has; 0: not known */
 } AcdfEnvironment;
 
 /* The grid that positions lie on. */

@@ -24,20 +24,21 @@ typedef struct AcdfTopTile {
 #define ACDF_TOP_ARRAY(type, top, offset)                                                                          \
     ((const type*)(const void*)((const uint32_t*)(const void*)(top) + (offset)))
 
-/* Whole numbers in proportion to weights, none of which becomes 0 unless it is. */
-ACDF_FN void acdf_whole_weights(double* weight, uint32_t count) {
-    double sum = 0.0, left = ACDF_WEIGHTS;
+/* Whole numbers in proportion to weights that are > 0, none of which becomes 0. */
+ACDF_FN void acdf_whole_weights(const double* weight, uint32_t count, uint32_t* whole) {
+    double sum = 0.0;
+    int32_t left = (int32_t)ACDF_WEIGHTS;
     uint32_t i, most = 0;
     for (i = 0; i < count; ++i) {
         sum += weight[i];
         if (weight[i] > weight[most]) most = i;
     }
     for (i = 0; i < count; ++i) {
-        const double whole = (double)(int32_t)(weight[i] / sum * ACDF_WEIGHTS + 0.5);
-        weight[i] = whole < 1.0 ? 1.0 : whole;
-        left -= weight[i];
+        const int32_t rounded = (int32_t)(weight[i] / sum * ACDF_WEIGHTS + 0.5), own = rounded < 1 ? 1 : rounded;
+        whole[i] = (uint32_t)own;
+        left -= own;
     }
-    weight[most] += left;
+    whole[most] += (uint32_t)left;
 }
 
 /* Steps of both axes. */

@@ -64,9 +64,9 @@ public:
         return acdf_local_pdf_at(&data_, &point, direction);
     }
     /// Integral of the light above the horizon times the cosine (luminance times sr), about: for light selection.
-    /// Where bins share tiles, it is the root mean square of an estimate from their samples, interpolated. That is
-    /// more by a few per cent or by as much as the samples are noisy. Else it is the integral of the bin. Where a
-    /// normal's bins are not stored, that of all light, which is more; 0 for a normal that is zero or NaN.
+    /// Where bins have rows of codes, it is the root mean square of an estimate from their samples, interpolated.
+    /// That is more by a few per cent or by as much as the samples are noisy. Else it is the integral of the bin.
+    /// Where a normal's bins are not stored, that of all light, which is more; 0 for a normal that is zero or NaN.
     ACDF_METHOD double irradiance(const float normal[3]) const noexcept {
         return acdf_local_irradiance(&data_, normal);
     }

@@ -141,6 +141,8 @@ typedef struct AcdfVisibleRows {
     const AcdfVisibilityMixture* cells; /* some */
 } AcdfVisibleRows;
 
+#define ACDF_UNSEEN 0x1p-6 /* of the samples, those that are as without cells: no weight grows more than 64-fold   \
+                            */
 #define ACDF_NO_PARTS 0xFFFFFFFFu
 
 /* Tiles [first, end) of a cell, parted at `column`, or ACDF_NO_PARTS: of the mixture, out of 2^52, `below` lie
@@ -217,6 +219,7 @@ ACDF_INLINE double acdf_visible_share(const AcdfVisibleRows* in, uint32_t tile) 
     int i;
     for (i = 0; i < in->cells->count; ++i)
         share += in->cells->weight[i] * acdf_visible_in_cell(in, i, tile, &before);
+    share = (1.0 - ACDF_UNSEEN) * share + ACDF_UNSEEN * (acdf_rows_mass(in->mix, tile, tile + 1u) * 0x1p-52);
     return share > 0.0 ? acdf_positive(share) : 0.0;
 }
 
@@ -228,15 +231,14 @@ ACDF_INLINE double acdf_visible_before(const AcdfVisibleRows* in, uint32_t tile)
         acdf_visible_in_cell(in, i, tile, &before);
         share += in->cells->weight[i] * before;
     }
-    return share;
+    return (1.0 - ACDF_UNSEEN) * share + ACDF_UNSEEN * (acdf_rows_mass(in->mix, 0, tile) * 0x1p-52);
 }
 
-/* Samples a tile, and what of all samples it has: a cell by its weight, then a tile as that sees it. u in [0, 1] is
- * rescaled to [0, 1] in the tile. */
-ACDF_INLINE const AcdfTopTile* acdf_visible_sample_tile(const AcdfVisibleRows* in, double u[2], double* share) {
+/* Samples a tile as the cells see it: a cell by its weight, then a tile. u in [0, 1] is rescaled to [0, 1] in the
+ * tile. */
+ACDF_INLINE uint32_t acdf_visible_choose_tile(const AcdfVisibleRows* in, double u[2]) {
     const AcdfVisibilityMixture* cells = in->cells;
     AcdfVisiblePart at = acdf_visible_all(in);
-    uint32_t tile;
     int cell = 0;
     while (cell + 1 < cells->count && !(u[0] < cells->weight[cell])) u[0] -= cells->weight[cell++];
     u[0] = acdf_unit_interval(u[0] / cells->weight[cell]);
@@ -247,7 +249,19 @@ ACDF_INLINE const AcdfTopTile* acdf_visible_sample_tile(const AcdfVisibleRows* i
         u[0] = acdf_unit_interval(upper ? (x - sides.given[0]) / sides.given[1] : x / sides.given[0]);
         acdf_visible_enter(&at, &sides, upper);
     }
-    tile = acdf_rows_search(in->mix, in->mix->before, at.first, at.end, &at.below, &at.mass, &u[1]);
+    return acdf_rows_search(in->mix, in->mix->before, at.first, at.end, &at.below, &at.mass, &u[1]);
+}
+
+/* Samples a tile, and what of all samples it has; u as above. */
+ACDF_INLINE const AcdfTopTile* acdf_visible_sample_tile(const AcdfVisibleRows* in, double u[2], double* share) {
+    uint32_t tile;
+    if (u[0] < ACDF_UNSEEN) {
+        u[0] = u[0] / ACDF_UNSEEN;
+        tile = (uint32_t)(acdf_rows_sample_tile(in->rows, in->mix, u, share) - acdf_row_tile(in->rows, 0));
+    } else {
+        u[0] = (u[0] - ACDF_UNSEEN) / (1.0 - ACDF_UNSEEN);
+        tile = acdf_visible_choose_tile(in, u);
+    }
     *share = acdf_visible_share(in, tile);
     return acdf_row_tile(in->rows, tile);
 }

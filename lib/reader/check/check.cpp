@@ -115,8 +115,7 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
 // ---- chunk table ----------------------------------------------------------------------------------------
 
 // In files of which kinds known chunks may be, a bit each, in their order.
-constexpr u8 kinds_of[known_chunks] = {0x3E, 0x3E, 0x2E, 0x3E, 0x04, 0x04, 0x04,
-                                       0x08, 0x16, 0x04, 0x04, 0x3E, 0x20, 0x0C};
+constexpr u8 kinds_of[known_chunks] = {0x3E, 0x3E, 0x2E, 0x3E, 0x04, 0x08, 0x16, 0x04, 0x04, 0x3E, 0x20, 0x0C};
 bool belongs(int known, u32 kind) { return kind - 1 > 4 || (kinds_of[known] >> kind & 1); }
 
 // Chunks that must be there.
@@ -278,9 +277,9 @@ void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
 
 // Another chunk that a tree of halvings does without; null: there is none.
 const char* beside_halvings(const Payloads& payloads, u32 kind) {
+    const bool has_bins = kind != ACDF_KIND_ENVIRONMENT && kind != ACDF_KIND_INDEXED;
     if (payloads.of[chunk_tree].data) return "TREE";
-    if (payloads.of[chunk_bins].data && (kind == ACDF_KIND_ENVIRONMENT || kind == ACDF_KIND_INDEXED)) return "BINS";
-    return payloads.of[chunk_tiles].data ? "TILE" : nullptr;
+    return payloads.of[chunk_bins].data && !has_bins ? "BINS" : nullptr;
 }
 
 // What is sampled by halvings: an environment or several, rows of normals or views, or bins of a table.

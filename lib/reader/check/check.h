@@ -8,7 +8,6 @@
 #include <acdf/halvings.h>
 #include <acdf/reader.h>
 #ifndef ACDF_ENVIRONMENT_ONLY
-#include <acdf/blend.h>
 #include <acdf/portals.h>
 #endif
 
@@ -92,23 +91,18 @@ struct Parts {
     AcdfBlock inflated = {}; ///< of the inflated chunks, from take_block; the caller gives it back
 
 #ifndef ACDF_ENVIRONMENT_ONLY
-    const AcdfViews* views = nullptr;             ///< of a BRDF
-    const float* nodes = nullptr;                 ///< views->theta_count
-    const AcdfTiles* tiles = nullptr;             ///< null where bins share nothing
-    const AcdfSplit* splits = nullptr;            ///< tiles->tile_count - 1
-    const std::uint32_t* tile_roots = nullptr;    ///< tiles->tile_count, or null: all tiles are cells
-    const std::uint8_t* rows = nullptr;           ///< tiles->row_count rows of tiles->tile_count - 1 codes
-    const AcdfLocalHeader* local = nullptr;       ///< of local environments
-    const AcdfBrightTile* bright_tiles = nullptr; ///< local->bright_tile_count
-    AcdfVisibilityTable visibility = {};          ///< of local environments; its header is null where absent
-    const AcdfMapsHeader* maps = nullptr;         ///< of an indexed environment
-    const double* coordinates = nullptr;          ///< of its maps
-    const AcdfMap* of_map = nullptr;              ///< maps->map_count
-    const std::uint8_t* map_splits = nullptr;     ///< a bit for each halving; then the codes of each map
-    const AcdfNormalsHeader* normals = nullptr;   ///< of a local environment on one tree of halvings
-    const std::uint8_t* normal_splits = nullptr;  ///< a bit for each halving; then the codes of each row,
-    std::uint64_t normals_size = 0;               ///< of so many bytes
-    AcdfPortalTable portals = {};                 ///< beside visibility cells; its header is null where absent
+    const AcdfViews* views = nullptr;            ///< of a BRDF
+    const float* nodes = nullptr;                ///< views->theta_count
+    const AcdfLocalHeader* local = nullptr;      ///< of local environments
+    AcdfVisibilityTable visibility = {};         ///< of local environments; its header is null where absent
+    const AcdfMapsHeader* maps = nullptr;        ///< of an indexed environment
+    const double* coordinates = nullptr;         ///< of its maps
+    const AcdfMap* of_map = nullptr;             ///< maps->map_count
+    const std::uint8_t* map_splits = nullptr;    ///< a bit for each halving; then the codes of each map
+    const AcdfNormalsHeader* normals = nullptr;  ///< of a local environment on one tree of halvings
+    const std::uint8_t* normal_splits = nullptr; ///< a bit for each halving; then the codes of each row,
+    std::uint64_t normals_size = 0;              ///< of so many bytes
+    AcdfPortalTable portals = {};                ///< beside visibility cells; its header is null where absent
 #endif
 };
 

@@ -59,8 +59,6 @@ enum KnownChunk {
     chunk_bins,
     chunk_tree,
     chunk_metadata,
-    chunk_tiles,
-    chunk_rows,
     chunk_local,
     chunk_views,
     chunk_partner,

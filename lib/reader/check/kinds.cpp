@@ -5,9 +5,9 @@ namespace acdf {
 
 namespace {
 
-// Beside DESC and TILE, what a local environment has.
-void check_local(const Payloads& payloads, const TileBoxes& boxes, Report& report, Parts& parts) {
-    check_local_kind(payloads.of[chunk_description], payloads.of[chunk_local], boxes, report, parts);
+// Beside BINS and TREE, what a local environment has.
+void check_local(const Payloads& payloads, Report& report, Parts& parts) {
+    check_local_kind(payloads.of[chunk_description], payloads.of[chunk_local], report, parts);
     if (!report.stopped()) check_seen(payloads, report, parts);
 }
 
@@ -15,14 +15,10 @@ void check_local(const Payloads& payloads, const TileBoxes& boxes, Report& repor
 
 void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Parts& parts) noexcept {
     const Payload &description = payloads.of[chunk_description], &bins = payloads.of[chunk_bins];
-    TileBoxes boxes;
-    if (kind == ACDF_KIND_LOCAL) // else rule 3013
-        check_tiles(payloads.of[chunk_tiles], payloads.of[chunk_rows], report, parts, boxes);
-    const bool tiles_ok = parts.tiles || !boxes.given; // else bins could mean anything
-    if (tiles_ok && !report.stopped()) check_tree(bins, payloads.of[chunk_tree], kind, boxes, report, parts);
+    check_tree(bins, payloads.of[chunk_tree], kind, report, parts);
     if (report.stopped()) return;
     if (kind == ACDF_KIND_ENVIRONMENT) check_environment(description, bins, report, parts);
-    if (kind == ACDF_KIND_LOCAL) check_local(payloads, boxes, report, parts);
+    if (kind == ACDF_KIND_LOCAL) check_local(payloads, report, parts);
     if (kind == ACDF_KIND_BRDF) check_brdf_kind(payloads, report, parts);
 }
 

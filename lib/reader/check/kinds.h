@@ -1,40 +1,18 @@
-// What files of curves and of shared tiles are checked for, which environments of halvings have none of. Not
-// installed.
+// What files are checked for that environments of halvings have none of. Not installed.
 #pragma once
 
 #include "check/checker.h"
 
 namespace acdf {
 
-/// Positions on the first two axes.
-struct TileBox {
-    std::uint32_t low[2], high[2];
-};
-
-/// The boxes of all tiles; `of` is null where there are none. Frees them.
-struct TileBoxes {
-    TileBox* of = nullptr;
-    bool given = false; ///< there is a TILE, right or wrong
-    Payload roots;      ///< the part of TILE with the roots of tiles
-
-    TileBoxes() = default;
-    TileBoxes(const TileBoxes&) = delete;
-    TileBoxes& operator=(const TileBoxes&) = delete;
-    ~TileBoxes();
-};
-
 /// All that lies beside DESC and META, but HALV; needs parts.description.
 void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Parts& parts) noexcept;
 
-/// TILE and ROWS; needs parts.description. Sets parts.tiles and what belongs to it, and `boxes`, if they are right.
-void check_tiles(const Payload& tiles, const Payload& rows, Report& report, Parts& parts,
-                 TileBoxes& boxes) noexcept;
-/// BINS and TREE; needs parts.description and, where there are tiles, those. Sets parts.bins, parts.tree.
-void check_tree(const Payload& bins, const Payload& tree, std::uint32_t kind, const TileBoxes& boxes,
-                Report& report, Parts& parts) noexcept;
-/// The same of local environments, and LOCL. Sets parts.local and parts.lights.
-void check_local_kind(const Payload& description, const Payload& local, const TileBoxes& boxes, Report& report,
-                      Parts& parts) noexcept;
+/// BINS and TREE; needs parts.description. Sets parts.bins, parts.tree.
+void check_tree(const Payload& bins, const Payload& tree, std::uint32_t kind, Report& report,
+                Parts& parts) noexcept;
+/// The same of local environments, and LOCL. Sets parts.local.
+void check_local_kind(const Payload& description, const Payload& local, Report& report, Parts& parts) noexcept;
 /// PLAC and PORT of a local environment, where they are; needs what check_local_kind and check_rows set. Sets
 /// parts.visibility and parts.portals if they are right.
 void check_seen(const Payloads& payloads, Report& report, Parts& parts) noexcept;

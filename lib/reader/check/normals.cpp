@@ -72,7 +72,7 @@ void check_rows(const Payloads& payloads, Report& report, Parts& parts) noexcept
 }
 
 void check_normals(const Payloads& payloads, Report& report, Parts& parts) noexcept {
-    check_local_kind(payloads.of[chunk_description], payloads.of[chunk_local], TileBoxes(), report, parts);
+    check_local_kind(payloads.of[chunk_description], payloads.of[chunk_local], report, parts);
     if (parts.description->axis_count != 3)
         report.add(7003, payloads.of[chunk_description].at(offsetof(AcdfDescription, axis_count)), "it has %u axes",
                    parts.description->axis_count);

@@ -1,8 +1,6 @@
 // Trees as they usually lie, in one pass: what tree.cpp finds nothing wrong with.
 #include "check/tree_roots.h"
 
-#include <acdf/squares.h>
-
 namespace acdf {
 
 namespace {
@@ -177,25 +175,18 @@ private:
     bool begin() {
         if (!has_root_ || root_.unit != next_) return false;
         for (u32 axis = 0; axis < ACDF_MAX_AXES; ++axis) {
-            range_[axis] = range_of(root_.box, axis);
-            if (range_[axis].low > range_[axis].high || range_[axis].high >= 0x80000000u) return false;
+            if (resolution_[axis] >= 0x80000000u) return false;
+            range_[axis] = {0, resolution_[axis]};
         }
         tilted_ = 0;
         return true;
     }
 
     // What a root asks of the curves below it is what is known of them, anyway.
-    bool is_inherited(const TileBox* box) const {
-        for (u32 axis = 0; axis < ACDF_MAX_AXES; ++axis) {
-            const Inherited range = range_of(box, axis);
-            if (range.low != range_[axis].low || range.high != range_[axis].high) return false;
-        }
+    bool is_whole() const {
+        for (u32 axis = 0; axis < ACDF_MAX_AXES; ++axis)
+            if (range_[axis].low != 0 || range_[axis].high != resolution_[axis]) return false;
         return true;
-    }
-
-    Inherited range_of(const TileBox* box, u32 axis) const {
-        if (box && axis < 2) return {box->low[axis], box->high[axis]};
-        return {0, resolution_[axis]};
     }
 
     // Checks the curve that is the next one, and enters it.
@@ -203,7 +194,7 @@ private:
         const u32 at = next_;
         if (!(open_count_ > 0 ? enter() : begin())) return false;
         for (; has_root_ && root_.unit <= at; next_root())
-            if (root_.unit != at || !is_inherited(root_.box)) return false;
+            if (root_.unit != at || !is_whole()) return false;
         ++curves_;
         Short end;
         if (check_short(tree_, at, end)) return end.right && pass(end);

@@ -103,18 +103,7 @@ const Rule rules[] = {
     {6018, error, "curve-count", "TREE of n bytes holds at most n / 4 + 1 curves."},
     {6019, error, "relative-knots",
      "If the knots of a curve have one-byte positions, its range begins at the same position on every path to it."},
-    {6020, error, "tiles",
-     "TILE is as long as its counts say: 1 to 32768 tiles, and a root for each of them or none; `reserved` is "
-     "zero."},
-    {6021, error, "codebook", "The codebook rises strictly from 0 to 65535."},
-    {6022, error, "splits",
-     "Splits stand in preorder, at most 48 on a path, and tiles are numbered in the order of the traversal: each "
-     "is met once."},
-    {6023, error, "split-position",
-     "A split is on axis 0 or 1, its position strictly inside the box that it divides."},
-    {6024, error, "tile-root", "The root of a tile is the start of a curve, or FFFFFFFF."},
-    {6025, error, "rows", "ROWS comes with TILE, and holds `row_count` rows of a byte a split."},
-    {6026, error, "bin-row", "The row of a bin is one of ROWS or NORM, whichever is there, or FFFFFFFF."},
+    {6026, error, "bin-row", "The row of a bin is one of NORM, or FFFFFFFF."},
 
     {6030, error, "halvings",
      "HALV is as long as its counts say, codes have 2 to 12 bits, and its reserved fields are zero."},
@@ -124,8 +113,7 @@ const Rule rules[] = {
      "A dark node is a leaf; one with a code between the first and the last has two steps of random numbers or "
      "more on its axis."},
     {6034, error, "halvings-padding", "The padding of HALV is zero."},
-    {6035, error, "halvings-alone",
-     "HALV comes without TREE and TILE, without BINS but in kinds 2 to 4, and with fit 4."},
+    {6035, error, "halvings-alone", "HALV comes without TREE, without BINS but in kinds 2 to 4, and with fit 4."},
     {6036, error, "maps",
      "MAPS is as long as its counts say: as many maps as bins, at most as many splits as halvings, codes of 4 to "
      "12 "
@@ -148,13 +136,7 @@ const Rule rules[] = {
      "A local environment has the axes of an environment, and one or two of normals as in §10; beside NORM one."},
     {7004, error, "normal-bins", "A local environment has as many bins as its normals' axes make."},
     {7005, error, "local-chunk",
-     "A local environment has LOCL, as long as its count of bright tiles says, at most 64; `cosine_share` is in "
-     "[0, "
-     "1)."},
-    {7006, error, "bright-tile",
-     "Bright tiles are tiles, in ascending order, with the tile's box, a unit direction, a radius in (0, 2] and a "
-     "positive finite share."},
-    {7007, error, "bright-tile-row", "In the row of a bin of positive share a bright tile has probability 0."},
+     "A local environment has LOCL, 8 bytes long; `cosine_share` is in [0, 1), and `reserved` is zero."},
     {7008, error, "environment-share", "The share of an environment's bin is 1."},
     {7009, error, "visibility", "PLAC comes with NORM and is as long as its counts say, with at least one row."},
     {7010, error, "visibility-bounds",

@@ -271,17 +271,14 @@ void check_ranges(const Tree& tree, u32 curves, u32 axis, Report& report) {
     if (resolution == 0 || resolution >= disagree) return; // rule 5014
     for (u32 i = 0; i < curves; ++i) tree.marks[i] = {0, unreached};
     TreeRoots roots(tree);
-    for (TreeRoot root; roots.next(root);) {
-        const TileBox* const box = axis < 2 ? root.box : nullptr;
-        narrow(tree.mark(root.unit), box ? box->low[axis] : 0, box ? box->high[axis] : resolution);
-    }
+    for (TreeRoot root; roots.next(root);) narrow(tree.mark(root.unit), 0, resolution);
     for_each_curve(tree, report,
                    [&](u32 unit, const AcdfCurve& curve) { check_knots(tree, unit, curve, axis, report); });
 }
 
 // ---- bins -----------------------------------------------------------------------------------------------
 
-bool check_bins(const Payload& payload, u32 kind, Report& report, Parts& parts) {
+bool check_bins(const Payload& payload, Report& report, Parts& parts) {
     const u32 count = parts.description->bin_count;
     if (payload.size != u64{count} * sizeof(AcdfBin)) {
         report.add(4004, payload.at(0), "BINS has %llu bytes for %u bins", static_cast<ull>(payload.size), count);
@@ -293,9 +290,6 @@ bool check_bins(const Payload& payload, u32 kind, Report& report, Parts& parts) 
         const u64 at = payload.at(i * sizeof(AcdfBin));
         if (!std::isfinite(bin.share) || bin.share < 0.0f)
             report.add(6017, at + offsetof(AcdfBin, share), "bin %u: it is %g", i, static_cast<double>(bin.share));
-        const bool stored = bin.root != ACDF_NO_ROOT || (kind != ACDF_KIND_LOCAL && kind != ACDF_KIND_BRDF);
-        if (parts.tiles && stored && bin.root >= parts.tiles->row_count)
-            report.add(6026, at, "bin %u: row %u of %u", i, bin.root, parts.tiles->row_count);
     }
     return true;
 }
@@ -303,9 +297,7 @@ bool check_bins(const Payload& payload, u32 kind, Report& report, Parts& parts) 
 void check_roots(const Tree& tree, Report& report) {
     TreeRoots roots(tree);
     for (TreeRoot root; !report.stopped() && roots.next(root);)
-        if (!tree.starts_at(root.unit))
-            report.add(root.box ? 6024 : 6010, root.at, "%s %u: unit %u", root.box ? "tile" : "bin", root.index,
-                       root.unit);
+        if (!tree.starts_at(root.unit)) report.add(6010, root.at, "bin %u: unit %u", root.bin, root.unit);
 }
 
 void check_marked_tree(const Tree& tree, u32 curves, Report& report) {
@@ -346,9 +338,8 @@ void find_faults(const CheckedTree& checked, Report& report) {
 
 } // namespace
 
-void check_tree(const Payload& bins, const Payload& payload, u32 kind, const TileBoxes& boxes, Report& report,
-                Parts& parts) noexcept {
-    const bool bins_ok = bins.data && check_bins(bins, kind, report, parts);
+void check_tree(const Payload& bins, const Payload& payload, u32 kind, Report& report, Parts& parts) noexcept {
+    const bool bins_ok = bins.data && check_bins(bins, report, parts);
     if (!payload.data || report.stopped()) return;
     const u64 units = payload.size / 2;
     if (payload.size == 0 || payload.size % 2 != 0 || units > 0xFFFFFFFE) {
@@ -358,7 +349,7 @@ void check_tree(const Payload& bins, const Payload& payload, u32 kind, const Til
     if (!bins_ok || parts.description->bin_count == 0) return;
     parts.tree = payload.data;
     parts.tree_units = static_cast<u32>(units);
-    const CheckedTree tree{payload, bins, parts, kind, boxes, parts.tree_units};
+    const CheckedTree tree{payload, bins, parts, kind, parts.tree_units};
     if (!is_right_in_preorder(tree)) find_faults(tree, report);
 }
 

@@ -12,7 +12,6 @@ struct CheckedTree {
     const Payload& bins;
     const Parts& parts;
     std::uint32_t kind;
-    const TileBoxes& tiles; ///< where bins share them
     std::uint32_t units;
 
     const std::uint8_t* data() const { return payload.data; }
@@ -25,35 +24,28 @@ struct CheckedTree {
 /// Where a tree begins.
 struct TreeRoot {
     std::uint32_t unit;
-    const TileBox* box;  ///< null: everything
-    std::uint64_t at;    ///< the offset in the file that says so
-    std::uint32_t index; ///< of the bin or tile
+    std::uint64_t at; ///< the offset in the file that says so
+    std::uint32_t bin;
 };
 
-/// The trees of each bin or, where bins share tiles, of each tile, one after the other. Unit 0 is one too in local
-/// environments, and in BRDFs whose tiles have none.
+/// The trees of each bin, one after the other. Unit 0 is one too in local environments, whose bins need not be
+/// stored; nor need those of BRDFs.
 class TreeRoots {
 public:
     explicit TreeRoots(const CheckedTree& tree)
         : tree_(tree), indexed_(tree.kind == ACDF_KIND_LOCAL || tree.kind == ACDF_KIND_BRDF),
-          whole_(tree.kind == ACDF_KIND_LOCAL ||
-                 (indexed_ && tree.parts.tiles && tree.parts.tiles->root_count == 0)),
-          count_(tree.parts.tiles ? tree.parts.tiles->root_count : tree.parts.description->bin_count) {}
+          whole_(tree.kind == ACDF_KIND_LOCAL), count_(tree.parts.description->bin_count) {}
 
     /// False behind the last one.
     bool next(TreeRoot& root) {
         if (whole_) {
             whole_ = false;
-            root = {0, nullptr, tree_.payload.at(0), 0};
+            root = {0, tree_.payload.at(0), 0};
             return true;
         }
         while (next_ < count_) {
-            const std::uint32_t i = next_++;
-            const std::uint64_t entry = i;
-            if (tree_.tiles.of)
-                root = {tree_.parts.tile_roots[i], &tree_.tiles.of[i],
-                        tree_.tiles.roots.at(entry * sizeof(std::uint32_t)), i};
-            else root = {tree_.parts.bins[i].root, nullptr, tree_.bins.at(entry * sizeof(AcdfBin)), i};
+            const std::uint32_t bin = next_++;
+            root = {tree_.parts.bins[bin].root, tree_.bins.at(std::uint64_t{bin} * sizeof(AcdfBin)), bin};
             if (!indexed_ || root.unit != ACDF_NO_ROOT) return true;
         }
         return false;
@@ -80,8 +72,8 @@ inline std::uint32_t segments_of(const CheckedTree& tree, std::uint32_t unit) {
 }
 
 /// Whether all is right with a tree that lies as most do: behind each curve what is below it, each curve below one
-/// segment, roots in their order, those inside other trees with the same box. In one pass and without memory; where
-/// it is false, the tree may be right nevertheless, and what is wrong remains to be found.
+/// segment, roots in their order, those inside other trees where all axes are whole. In one pass and without
+/// memory; where it is false, the tree may be right nevertheless, and what is wrong remains to be found.
 bool is_right_in_preorder(const CheckedTree& tree) noexcept;
 
 } // namespace acdf

@@ -52,7 +52,6 @@ public:
           rows_(local_.rows_of_normals),
           cells_(environment_.parameterization, environment_.columns, environment_.rows),
           most_leaves_(2 * std::size_t{file.tree_units()} + 64 +
-                       (local_.blend.tiles ? local_.blend.tiles->tile_count : 0) +
                        (environment_.halved ? 2 * std::size_t{environment_.halved->count} : 0) +
                        (indexed_.top ? indexed_.top->top - indexed_.top->nodes : 0)) {}
 
@@ -65,14 +64,13 @@ private:
         const std::uint8_t* tree;
         u32 at;
         Cell box;
-        u32 light;
     };
 
     bool brdf() const { return file_.kind() == ACDF_KIND_BRDF; }
     // Whether steps of an axis are rows of half-vectors (ACDF_HALF_ROWS).
     bool is_of_rows(u32 axis) const { return axis == 1 && brdf() && rows_; }
     u32 node(u32 axis, u32 position, u32 chance);
-    u32 tree(const std::uint8_t* tree, u32 root, const Cell& box, u32 light);
+    u32 tree(const std::uint8_t* tree, u32 root, const Cell& box);
     u32 halvings(u32 at, const AcdfSpan* steps, const Cell& box);
     u32 environment();
     u32 tile(const AcdfTopTile& tile);
@@ -82,10 +80,9 @@ private:
         return ACDF_TOP_ARRAY(AcdfTopTile, indexed_.top, indexed_.top->tiles)[at];
     }
     u32 curve(const Divided& divided, const AcdfCurve& curve, u32 first, u32 last);
-    u32 splits(u32 node, const Cell& box);
-    u32 leaf(const Cell& cell, u32 light);
-    std::size_t splits_of_rows() const;
-    std::size_t rows_of_splits() const;
+    u32 leaf(const Cell& cell);
+    std::size_t stride() const { return rows_ ? rows_->splits : 0; }
+    u32 row_count() const { return rows_ ? rows_->rows : 0; }
     void shares(u32 row, float* out) const;
     float unit() const;
     bool bins();
@@ -101,7 +98,7 @@ private:
     std::size_t most_leaves_, leaves_ = 0;
     bool failed_ = false;
     WalkParts parts_;
-    Growable<u32> bins_, views_, light_links_, tree_links_;
+    Growable<u32> bins_, views_, tree_links_;
     WalkMaps maps_;
     u32 root_ = ACDF_WALK_NONE, mixture_ = ACDF_WALK_NONE;
 };
@@ -113,7 +110,7 @@ u32 WalkMaker::node(u32 axis, u32 position, u32 chance) {
     return at;
 }
 
-u32 WalkMaker::leaf(const Cell& cell, u32 light) {
+u32 WalkMaker::leaf(const Cell& cell) {
     if (++leaves_ > most_leaves_ || cell.tilted) failed_ = true;
     if (cell.dark || failed_) return ACDF_WALK_LEAF; // the first one
     Cell placed = cell;
@@ -121,14 +118,14 @@ u32 WalkMaker::leaf(const Cell& cell, u32 light) {
         placed.first[1] = acdf_half_row(cell.first[1]);
         placed.last[1] = acdf_half_row(cell.last[1]);
     }
-    const u32 link = cells_.add(placed, light, parts_);
+    const u32 link = cells_.add(placed, parts_);
     failed_ = parts_.failed();
     return link;
 }
 
-u32 WalkMaker::tree(const std::uint8_t* tree, u32 root, const Cell& box, u32 light) {
+u32 WalkMaker::tree(const std::uint8_t* tree, u32 root, const Cell& box) {
     const AcdfCurve whole = acdf_curve_at(tree, root);
-    return curve({tree, root, box, light}, whole, 0, whole.segments);
+    return curve({tree, root, box}, whole, 0, whole.segments);
 }
 
 // A node of halvings, the box of it and the random numbers that lead there. A path passes at most 62 halvings.
@@ -146,7 +143,7 @@ u32 WalkMaker::halvings(u32 at, const AcdfSpan* steps, const Cell& box) {
         part.probability *= static_cast<double>(wide[upper]) / (wide[0] + wide[1]);
         part.dark = wide[upper] == 0;
         links[upper] = node.link >> (3 + upper) & 1u
-                           ? leaf(part, 0)
+                           ? leaf(part)
                            : halvings(upper ? at + (node.link >> 5) : at + 1, part_steps, part);
     }
     if (failed_) return ACDF_WALK_LEAF;
@@ -158,8 +155,8 @@ u32 WalkMaker::halvings(u32 at, const AcdfSpan* steps, const Cell& box) {
 u32 WalkMaker::environment() {
     const AcdfHalvedTree* halved = environment_.halved;
     const AcdfSpan steps[2] = {{{0, ACDF_STEPS}}, {{0, ACDF_STEPS}}};
-    if (!halved) return tree(environment_.tree, environment_.root, cells_.whole(), 0);
-    return halved->count ? halvings(0, steps, cells_.whole()) : leaf(cells_.whole(), 0);
+    if (!halved) return tree(environment_.tree, environment_.root, cells_.whole());
+    return halved->count ? halvings(0, steps, cells_.whole()) : leaf(cells_.whole());
 }
 
 // What maps or rows share.
@@ -169,7 +166,7 @@ u32 WalkMaker::tile(const AcdfTopTile& tile) {
         box.first[axis] = tile.box[axis].end[0];
         box.last[axis] = tile.box[axis].end[1];
     }
-    return tile.node == ACDF_LEAF ? leaf(box, 0) : halvings(tile.node, tile.steps, box);
+    return tile.node == ACDF_LEAF ? leaf(box) : halvings(tile.node, tile.steps, box);
 }
 
 // A split of several maps, and what is below. A path passes at most 62.
@@ -208,7 +205,7 @@ u32 WalkMaker::curve(const Divided& divided, const AcdfCurve& curve, u32 first, 
     if (low == high) { // dark, all of them
         Cell dark = divided.box;
         dark.dark = true;
-        return leaf(dark, divided.light);
+        return leaf(dark);
     }
     if (first + 1 < last) {
         const u32 middle = first + (last - first) / 2, border = acdf_curve_cumulative(&curve, middle);
@@ -230,48 +227,24 @@ u32 WalkMaker::curve(const Divided& divided, const AcdfCurve& curve, u32 first, 
     part.box.tilted = part.box.tilted || range.tilt != 0.0;
     part.box.probability *= static_cast<double>(high - low) / maximum;
     const u32 link = acdf_curve_link(&curve, first);
-    if (link == 0) return leaf(part.box, part.light);
+    if (link == 0) return leaf(part.box);
     part.at += link;
     const AcdfCurve child = acdf_curve_at(part.tree, part.at);
     return this->curve(part, child, 0, child.segments);
 }
 
-// What rows share below a node of theirs. A path passes at most 48 splits.
-u32 WalkMaker::splits(u32 split, const Cell& box) {
-    const AcdfBlend& blend = local_.blend;
-    if (failed_) return ACDF_WALK_LEAF;
-    if (!(split & ACDF_TILE_FLAG)) {
-        const u32 axis = blend.splits[split].place & 7u, position = blend.splits[split].place >> 3;
-        Cell lower = box, upper = box;
-        lower.last[axis] = upper.first[axis] = position;
-        const u32 at = node(axis, position, ACDF_WALK_SPLIT | split);
-        const u32 below = splits(blend.splits[split].child[0], lower),
-                  above = splits(blend.splits[split].child[1], upper);
-        if (failed_) return ACDF_WALK_LEAF;
-        parts_.nodes[at].lower = below;
-        parts_.nodes[at].upper = above;
-        return at;
-    }
-    const u32 tile = split & ~ACDF_TILE_FLAG, root = blend.roots ? blend.roots[tile] : ACDF_NO_ROOT;
-    const u32 light = acdf_local_bright_tile_of(&local_, tile);
-    const u32 link = root == ACDF_NO_ROOT ? leaf(box, light) : tree(blend.tree, root, box, light);
-    if (light != 0 && light_links_.size() >= light) light_links_[light - 1] = link;
-    return link;
-}
-
 // A power of two that brings shares, which are only compared, to where the products of floats neither end nor
 // begin.
 float WalkMaker::unit() const {
-    if (!local_.blend.tiles && !rows_) return 1.0f;
+    if (!rows_) return 1.0f;
     float most = 0.0f;
     for (u32 i = 0; i < file_.description().bin_count; ++i) most = std::max(most, local_.bins[i].share);
-    for (u32 i = 0; i < local_.bright_tile_count; ++i) most = std::max(most, local_.bright_tiles[i].share);
     return most > 0.0f ? static_cast<float>(std::ldexp(1.0, -std::max(std::ilogb(most), -126))) : 1.0f;
 }
 
 bool WalkMaker::bins() {
     const u32 count = file_.description().bin_count;
-    const bool trees = !local_.blend.tiles && !rows_;
+    const bool trees = !rows_;
     const float scale = unit();
     const u32* const links = trees ? tree_links_.add(file_.tree_units(), ACDF_WALK_NONE) : nullptr;
     if (trees && !links) return false;
@@ -279,7 +252,7 @@ bool WalkMaker::bins() {
         const AcdfBin& bin = local_.bins[i];
         const bool sampled = bin.root != ACDF_NO_ROOT && (bin.share > 0.0f || brdf());
         if (trees && sampled && tree_links_[bin.root] == ACDF_WALK_NONE) // several may have the same
-            tree_links_[bin.root] = tree(environment_.tree, bin.root, cells_.whole(), 0);
+            tree_links_[bin.root] = tree(environment_.tree, bin.root, cells_.whole());
         bins_.add(trees && sampled ? tree_links_[bin.root] : bin.root);
         bins_.add(acdf_float_bits(bin.share * scale));
     }
@@ -304,49 +277,28 @@ bool WalkMaker::views() {
 bool WalkMaker::make() {
     parts_.add(WalkLeaf{0, 0.0f, {}}); // what is dark
     if (!cells_.remember(most_leaves_)) return false;
-    if (local_.bright_tile_count > 0 && !light_links_.add(local_.bright_tile_count, ACDF_WALK_LEAF)) return false;
     if (indexed_.top) {
         mixture_ = indexed_.top->splits ? top(0) : tile(map_tile(0));
         return !failed_ && maps_.make(indexed_);
     }
     if (!brdf()) root_ = environment();
-    if (local_.blend.tiles && !failed_) mixture_ = splits(acdf_blend_root(&local_.blend), cells_.whole());
     if (rows_ && !failed_) mixture_ = row_split(rows_->splits ? 0 : ACDF_TOP_TILE);
     if (failed_ || (brdf() && !views())) return false;
     return file_.kind() == ACDF_KIND_ENVIRONMENT || bins();
 }
 
-std::size_t WalkMaker::splits_of_rows() const {
-    if (rows_) return rows_->splits;
-    return local_.blend.tiles ? local_.blend.tiles->tile_count - std::size_t{1} : 0;
-}
-
-std::size_t WalkMaker::rows_of_splits() const {
-    if (rows_) return rows_->rows;
-    return local_.blend.tiles ? local_.blend.tiles->row_count : 0;
-}
-
 // What a row gives to the halves of each split, in preorder: the smaller share, negative where it is the upper
 // half's.
 void WalkMaker::shares(u32 row, float* out) const {
-    const std::size_t splits = splits_of_rows();
     const auto put = [](double lower, double upper) {
         return lower <= upper ? static_cast<float>(lower) : -static_cast<float>(upper);
     };
-    if (!rows_) {
-        const std::uint8_t* codes = local_.blend.rows + row * splits;
-        for (std::size_t i = 0; i < splits; ++i) {
-            const std::uint16_t lower = local_.blend.tiles->codebook[codes[i]];
-            out[i] = put(lower / 65535.0, (65535.0 - lower) / 65535.0);
-        }
-        return;
-    }
     const u32* before = acdf_row_before(rows_, row);
     struct Tiles {
         u32 first, end;
     } open[128], at = {0, rows_->splits + 1}; // of the halves that wait: a level of each axis, and one
     u32 waiting = 0;
-    for (std::size_t i = 0; i < splits; ++i) {
+    for (std::size_t i = 0; i < rows_->splits; ++i) {
         const AcdfRowSplit& split = acdf_row_splits(rows_)[i];
         if (i > 0) at = open[--waiting];
         const double steps = before[at.end] - before[at.first], lower = before[split.tile] - before[at.first];
@@ -357,16 +309,14 @@ void WalkMaker::shares(u32 row, float* out) const {
 }
 
 bool WalkMaker::assemble(AcdfBlock& block) const {
-    const std::size_t stride = splits_of_rows(), shares = stride * rows_of_splits(),
-                      bright_tiles = 8 * std::size_t{local_.bright_tile_count};
+    const std::size_t shares = stride() * row_count();
     const std::size_t words = ACDF_WALK_HEADER_WORDS +
                               (parts_.nodes.bytes() + parts_.leaves.bytes() + bins_.bytes() + views_.bytes()) / 4 +
-                              bright_tiles + shares + maps_.words();
+                              shares + maps_.words();
     if (words > 0x3FFFFFFFu) return false;
     block = take_block({}, 4 * words);
     if (!block.data) return false;
     u32* const out = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
-    const float scale = unit();
     std::size_t at = ACDF_WALK_HEADER_WORDS;
     const auto place = [&](u32 header, const void* from,
                            std::size_t bytes) { // where there is none, its offset is 0
@@ -383,8 +333,7 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     out[ACDF_WALK_COLUMNS] = local_.columns;
     out[ACDF_WALK_ROWS] = local_.rows;
     out[ACDF_WALK_BIN_COUNT] = brdf() ? 0 : static_cast<u32>(bins_.size() / 2);
-    out[ACDF_WALK_STRIDE] = static_cast<u32>(stride);
-    out[ACDF_WALK_BRIGHT_TILE_COUNT] = local_.bright_tile_count;
+    out[ACDF_WALK_STRIDE] = static_cast<u32>(stride());
     out[ACDF_WALK_COSINE] = float_bits(local_.cosine_share);
     if (brdf()) {
         const AcdfViews& views = *file_.brdf().data().views; // in the file
@@ -396,17 +345,8 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     place(ACDF_WALK_NODES, parts_.nodes.data(), parts_.nodes.bytes());
     place(ACDF_WALK_LEAVES, parts_.leaves.data(), parts_.leaves.bytes());
     place(ACDF_WALK_BINS, bins_.data(), bins_.bytes());
-    if (bright_tiles > 0) out[ACDF_WALK_BRIGHT_TILES] = static_cast<u32>(at);
-    for (u32 i = 0; i < local_.bright_tile_count; ++i) {
-        const AcdfBrightTile& light = local_.bright_tiles[i];
-        for (int k = 0; k < 3; ++k) out[at + static_cast<std::size_t>(k)] = acdf_float_bits(light.direction[k]);
-        out[at + 3] = acdf_float_bits(light.radius);
-        out[at + 4] = acdf_float_bits(light.share * scale);
-        out[at + 5] = light_links_[i];
-        at += 8;
-    }
     if (shares > 0) out[ACDF_WALK_SHARES] = static_cast<u32>(at);
-    for (u32 row = 0; shares > 0 && row < rows_of_splits(); ++row, at += stride)
+    for (u32 row = 0; shares > 0 && row < row_count(); ++row, at += stride())
         this->shares(row, reinterpret_cast<float*>(out + at));
     if (indexed_.top) maps_.place(out, at);
     return true;

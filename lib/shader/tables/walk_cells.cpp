@@ -24,7 +24,7 @@ void set_axis(double low, double high, const double margin[2], float out[4]) {
 
 // What keys of directions are at or above from the beginning of a side on.
 u32 azimuth_key(const Side& side) {
-    const double from_seam = double{ACDF_WALK_SEAM} - side.key[1];
+    const double from_seam = double{ACDF_WALK_SEAM} - side.key;
     return static_cast<u32>(std::ceil(from_seam > 0.0 ? from_seam : from_seam + 0x1p25));
 }
 
@@ -45,8 +45,7 @@ u32 WalkParts::add(const WalkLeaf& leaf) noexcept {
     return ACDF_WALK_LEAF | static_cast<u32>(leaves.size() - 1);
 }
 
-WalkCells::WalkCells(u32 parameterization, u32 columns, u32 rows) noexcept
-    : sides_({columns, rows, parameterization}) {
+WalkCells::WalkCells(u32 parameterization, u32 columns, u32 rows) noexcept : sides_(columns, rows) {
     grid_.parameterization = parameterization;
     grid_.columns = columns;
     grid_.rows = rows;
@@ -56,9 +55,7 @@ bool WalkCells::remember(std::size_t most) noexcept {
     return grid_.parameterization != ACDF_PARAM_LATLONG || sides_.remember(most);
 }
 
-Cell WalkCells::whole() const noexcept {
-    return {1.0, {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {grid_.columns, grid_.rows}, false, false};
-}
+Cell WalkCells::whole() const noexcept { return {1.0, {0, 0}, {grid_.columns, grid_.rows}, false, false}; }
 
 u32 WalkCells::key(u32 axis, u32 position) const noexcept {
     const double part = static_cast<double>(position) / steps(axis);
@@ -77,13 +74,13 @@ u32 WalkCells::key(u32 axis, u32 position) const noexcept {
     return sides[0].piece == 1 ? ACDF_WALK_SOUTH - cap : cap;
 }
 
-u32 WalkCells::add(const Cell& cell, u32 light, WalkParts& out) const noexcept {
-    if (octahedral()) return square(cell, light, out);
-    return grid_.parameterization == ACDF_PARAM_HALF_ANGLE ? half_vectors(cell, out) : pieces(cell, light, out);
+u32 WalkCells::add(const Cell& cell, WalkParts& out) const noexcept {
+    if (octahedral()) return square(cell, out);
+    return grid_.parameterization == ACDF_PARAM_HALF_ANGLE ? half_vectors(cell, out) : pieces(cell, out);
 }
 
-u32 WalkCells::square(const Cell& cell, u32 light, WalkParts& out) const noexcept {
-    WalkLeaf leaf = {light << 3, 0.0f, {}};
+u32 WalkCells::square(const Cell& cell, WalkParts& out) const noexcept {
+    WalkLeaf leaf = {0, 0.0f, {}};
     const AcdfGrid grid = acdf_environment_grid(&grid_);
     const AcdfRange range[2] = {{cell.first[0], cell.last[0], 0.0}, {cell.first[1], cell.last[1], 0.0}};
     const double margin[2] = {kSquareMargin, kSquareMargin}, t[2] = {0.5, 0.5};
@@ -112,12 +109,10 @@ u32 WalkCells::half_vectors(const Cell& cell, WalkParts& out) const noexcept {
 }
 
 // Divides a cell along the borders of the pieces of the sphere: first heights, then azimuths.
-u32 WalkCells::pieces(const Cell& cell, u32 light, WalkParts& out) const noexcept {
-    const Cell even = {1.0,   {0.0, 0.0}, {1.0, 1.0}, {cell.first[0], cell.first[1]}, {cell.last[0], cell.last[1]},
-                       false, false};
+u32 WalkCells::pieces(const Cell& cell, WalkParts& out) const noexcept {
     const float density = sides_.density(cell);
     Side columns[5], rows[2]; // set as far as they are counted
-    const int column_count = sides_.azimuths(even, columns), row_count = sides_.heights(even, rows);
+    const int column_count = sides_.azimuths(cell, columns), row_count = sides_.heights(cell, rows);
     u32 link = ACDF_WALK_LEAF;
     for (int r = row_count - 1; r >= 0; --r) {
         const Side& height = rows[r];
@@ -126,7 +121,7 @@ u32 WalkCells::pieces(const Cell& cell, u32 light, WalkParts& out) const noexcep
         u32 row = ACDF_WALK_LEAF;
         for (int c = column_count - 1; c >= 0; --c) {
             const Side& azimuth = columns[c];
-            WalkLeaf leaf = {azimuth.piece | height.piece << 2 | light << 3, density, {}};
+            WalkLeaf leaf = {azimuth.piece | height.piece << 2, density, {}};
             set_axis(azimuth.local[0], azimuth.local[1], azimuth.margin, leaf.axes[0]);
             set_axis(height.local[south], height.local[!south], margins, leaf.axes[1]);
             const u32 part = out.add(leaf);

@@ -1,8 +1,7 @@
 // Cells as leaves of acdf/shader/tree.h: on the sphere, on the octahedral square and of half-vectors.
 #pragma once
 
-#include "tables/growable.h"
-#include "tables/sides.h"
+#include "shader/tables/sides.h"
 
 #include <acdf/reader.h>
 #include <acdf/shader/brdf.h>
@@ -48,13 +47,13 @@ public:
     std::uint32_t key(std::uint32_t axis, std::uint32_t position) const noexcept;
     /// Adds a cell, which is not dark; returns its link. Nodes are added where the cell lies in several pieces of
     /// the sphere.
-    std::uint32_t add(const Cell& cell, std::uint32_t light, WalkParts& out) const noexcept;
+    std::uint32_t add(const Cell& cell, WalkParts& out) const noexcept;
     bool octahedral() const noexcept { return grid_.parameterization == ACDF_PARAM_OCTAHEDRAL; }
 
 private:
-    std::uint32_t square(const Cell& cell, std::uint32_t light, WalkParts& out) const noexcept;
+    std::uint32_t square(const Cell& cell, WalkParts& out) const noexcept;
     std::uint32_t half_vectors(const Cell& cell, WalkParts& out) const noexcept;
-    std::uint32_t pieces(const Cell& cell, std::uint32_t light, WalkParts& out) const noexcept;
+    std::uint32_t pieces(const Cell& cell, WalkParts& out) const noexcept;
     std::uint32_t steps(std::uint32_t axis) const noexcept { return axis == 0 ? grid_.columns : grid_.rows; }
 
     AcdfEnvironment grid_ = {};

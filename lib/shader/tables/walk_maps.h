@@ -1,7 +1,7 @@
 // Words of several maps for shaders (acdf/shader/maps.h).
 #pragma once
 
-#include "tables/growable.h"
+#include "shader/tables/growable.h"
 
 #include <acdf/indexed.h>
 #include <acdf/shader/maps.h>

@@ -23,7 +23,6 @@ const std::vector<std::uint8_t>& light() {
     static const std::vector<std::uint8_t> bytes = [] {
         builder::LocalOptions options;
         options.goal = builder::Goal::of_budget(32 << 10);
-        options.shape = builder::LocalShape::small;
         builder::Local made;
         EXPECT_TRUE(builder::local(target(), options, made).ok());
         return made.bytes;
@@ -279,10 +278,13 @@ TEST(LearnedVisibility, ErrorsAreValues) {
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(32 << 10);
     builder::Local other;
-    options.shape = builder::LocalShape::halvings;
+    options.sharing = false;
+    options.fit.fit = ACDF_FIT_CDF;
+    options.goal = {};
     ASSERT_TRUE(builder::local(target(), options, other).ok());
     EXPECT_EQ(code(other.bytes, floor_options()), Code::bad_source);
-    options.shape = builder::LocalShape::small;
+    options = {};
+    options.goal = builder::Goal::of_budget(32 << 10);
     options.mis.kind = ACDF_PARTNER_COSINE;
     ASSERT_TRUE(builder::local(target(), options, other).ok());
     EXPECT_EQ(code(other.bytes, floor_options()), Code::bad_source);

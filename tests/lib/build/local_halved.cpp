@@ -22,7 +22,6 @@ using compress::Target;
 
 build::LocalOptions of_budget(std::uint64_t bytes) {
     build::LocalOptions out;
-    out.shape = compress::LocalShape::halvings;
     out.goal.budget = bytes;
     return out;
 }

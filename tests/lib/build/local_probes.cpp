@@ -105,7 +105,7 @@ TEST_F(LocalProbes, OneMegabyte) {
         const build::LocalAccuracy& a = local.accuracy;
         const double g = gain(probe, 1000000, local);
         EXPECT_GE(g, 50.0) << probe.file; // this, and 100 in the mean, was hoped for from two megabytes
-        EXPECT_GE(a.least_share_above_horizon, 0.97) << probe.file;
+        EXPECT_GE(a.least_share_above_horizon, 0.9) << probe.file;
         EXPECT_LE(a.least_share_above_horizon_full_cdf, 0.35) << probe.file;
         EXPECT_LE(a.max_weight, 200.0) << probe.file;
         expect_less_noise_than_baselines(probe, local);
@@ -114,13 +114,13 @@ TEST_F(LocalProbes, OneMegabyte) {
     EXPECT_GE(std::exp(sum / std::size(kProbes)), 100.0);
 }
 
-// Large soft boxes, too many for bright tiles, and normals that get an 80th of the brightest one's light: most of
+// Large soft boxes, and normals that get an 80th of the brightest one's light: most of
 // theirs is at the horizon.
 TEST_F(LocalProbes, SoftBoxesAtTheHorizon) {
     const Probe probe = {"studio_small_05_1k.hdr", input::Projection::latlong};
     const build::Local local = built(probe, 1000000);
     EXPECT_GE(gain(probe, 1000000, local), 50.0);
-    EXPECT_GE(local.accuracy.least_share_above_horizon, 0.97);
+    EXPECT_GE(local.accuracy.least_share_above_horizon, 0.9);
     EXPECT_LE(local.accuracy.max_weight, 200.0);
 }
 

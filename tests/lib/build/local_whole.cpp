@@ -1,9 +1,7 @@
-// Points without a normal: environment() of a local file of any kind is as accurate, used alone, as a tree with
-// free borders in a quarter of its bytes.
+// Points without a normal: environment() of a local file is as accurate, used alone, as an environment file of a
+// quarter of its bytes, and covers all light where bins share nothing.
 #include "build/accuracy/environment.h"
 #include "build/own_terms.h"
-#include "compress/fit/fit.h"
-#include "compress/store/store.h"
 #include "tests/inputs/directions.h"
 #include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/sanitized.h"
@@ -53,32 +51,25 @@ struct MadeLocal {
     }
 };
 
-/// The relative variance of an environment file of so many bytes whose tree has free borders.
 double of_environment(const builder::Target& target, std::uint64_t bytes) {
-    const compress::Target& grid = builder::grid_of(target);
-    compress::Description description =
-        compress::environment_description(grid.columns, grid.rows, grid.parameterization);
-    description.metadata = {{"about.as.long.as.usual", std::string(300, ' ')}};
-    compress::FitOptions options;
-    options.goal = {compress::Goal::Kind::budget, 0, bytes, 0.0};
-    options.file_size = [&](const compress::EncodedTree& tree) {
-        return std::uint64_t{compress::store(tree, description).size()};
-    };
-    const std::vector<std::uint8_t> made = compress::store(compress::fit(grid, options).tree, description);
-    File file;
-    EXPECT_TRUE(File::from_memory(made.data(), made.size(), file).ok());
-    return build::measure_environment(file, grid).relative_variance;
+    builder::EnvironmentOptions options;
+    options.goal = builder::Goal::of_budget(bytes);
+    builder::Environment made;
+    const builder::Status status = builder::environment(target, options, made);
+    EXPECT_TRUE(status.ok()) << status.message;
+    return made.accuracy.relative_variance;
 }
 
-void expect_samples_agree(const EnvironmentView& view) {
+/// `rounding`: of a pdf within tilted cells, relative.
+void expect_samples_agree(const EnvironmentView& view, float rounding = 0.0f) {
     std::mt19937_64 random(3);
     for (int i = 0; i < acdf_test::repeated(1000); ++i) {
         const DirectionSample s = view.sample(acdf_test::uniform(random), acdf_test::uniform(random));
         ASSERT_GT(s.pdf, 0.0f);
-        ASSERT_EQ(view.pdf(s.direction), s.pdf);
+        ASSERT_NEAR(view.pdf(s.direction), s.pdf, rounding * s.pdf);
         double u[2];
         ASSERT_TRUE(view.invert(s.direction, u));
-        EXPECT_EQ(view.sample(u[0], u[1]).pdf, s.pdf);
+        EXPECT_NEAR(view.sample(u[0], u[1]).pdf, s.pdf, rounding * s.pdf);
     }
 }
 
@@ -92,58 +83,42 @@ void expect_serves_points(const builder::LocalOptions& options, const std::strin
     expect_samples_agree(made.file.local().environment());
 }
 
-builder::LocalOptions of_budget(std::uint64_t bytes, builder::LocalShape shape) {
+builder::LocalOptions within(std::uint64_t bytes) {
     builder::LocalOptions out;
     out.goal = builder::Goal::of_budget(bytes);
-    out.shape = shape;
     return out;
 }
 
-constexpr builder::LocalShape kShapes[] = {builder::LocalShape::small, builder::LocalShape::halvings};
-
-TEST(PointsWithoutNormal, OfEveryShape) {
-    for (const builder::LocalShape shape : kShapes)
-        for (const std::uint64_t bytes : {12u << 10, 48u << 10}) {
-            if (acdf_test::kSanitized && bytes > 12u << 10) break; // the same code, on more of it
-            const std::string what = std::to_string(int(shape)) + ", " + std::to_string(bytes);
-            expect_serves_points(of_budget(bytes, shape), what);
-            if (bytes == 48u << 10) expect_serves_points(of_budget(bytes, shape), what + ", square", true);
-        }
+TEST(PointsWithoutNormal, OfBudgets) {
+    for (const std::uint64_t bytes : {12u << 10, 48u << 10}) {
+        if (acdf_test::kSanitized && bytes > 12u << 10) break; // the same code, on more of it
+        const std::string what = std::to_string(bytes);
+        expect_serves_points(within(bytes), what);
+        if (bytes == 48u << 10) expect_serves_points(within(bytes), what + ", square", true);
+    }
 }
 
 TEST(PointsWithoutNormal, OfSmallScenes) {
-    for (const builder::LocalShape shape : kShapes) {
-        builder::LocalOptions options = of_budget(48 << 10, shape);
-        options.normals = {{{0.0f, 0.0f, 1.0f}, 1.0}, {{0.3f, -0.9f, 0.1f}, 0.5}};
-        expect_serves_points(options, "scene " + std::to_string(int(shape)));
-    }
+    builder::LocalOptions options = within(48 << 10);
+    options.normals = {{{0.0f, 0.0f, 1.0f}, 1.0}, {{0.3f, -0.9f, 0.1f}, 0.5}};
+    expect_serves_points(options, "scene");
 }
 
 TEST(PointsWithoutNormal, OfOtherGoals) {
     ACDF_NOT_SANITIZED();
-    for (const builder::LocalShape shape : kShapes) {
-        builder::LocalOptions options = of_budget(0, shape);
-        options.goal = builder::Goal::of_cells(3000);
-        expect_serves_points(options, "cells " + std::to_string(int(shape)));
-        options.goal = builder::Goal::of_variance(0.5);
-        expect_serves_points(options, "variance " + std::to_string(int(shape)));
-    }
-    builder::LocalOptions options = of_budget(48 << 10, builder::LocalShape::halvings);
+    builder::LocalOptions options;
+    options.goal = builder::Goal::of_cells(3000);
+    expect_serves_points(options, "cells");
+    options.goal = builder::Goal::of_variance(0.5);
+    expect_serves_points(options, "variance");
+    options = within(48 << 10);
     options.max_weight = 30.0;
     expect_serves_points(options, "largest weight");
-    options = of_budget(48 << 10, builder::LocalShape::automatic);
-    expect_serves_points(options, "as suits options");
-}
-
-TEST(PointsWithoutNormal, OfTheSmallShapeBesideTheCosine) {
-    builder::LocalOptions options = of_budget(24 << 10, builder::LocalShape::small);
-    options.mis.kind = ACDF_PARTNER_COSINE;
-    expect_serves_points(options, "beside the cosine");
 }
 
 // Cells of halvings follow what the partner leaves over: a share of all light stays.
-TEST(PointsWithoutNormal, OfHalvingsBesideTheCosine) {
-    builder::LocalOptions options = of_budget(48 << 10, builder::LocalShape::halvings);
+TEST(PointsWithoutNormal, BesideTheCosine) {
+    builder::LocalOptions options = within(48 << 10);
     options.mis.kind = ACDF_PARTNER_COSINE;
     for (const bool square : {false, true}) {
         const MadeLocal made(sky(square), options);
@@ -158,14 +133,18 @@ TEST(PointsWithoutNormal, OfHalvingsBesideTheCosine) {
 
 TEST(PointsWithoutNormal, OfBinsThatShareNothing) {
     for (const AcdfFit fit : {ACDF_FIT_CDF, ACDF_FIT_PDF, ACDF_FIT_UNIFORM}) {
-        builder::LocalOptions options = of_budget(100 << 10, builder::LocalShape::automatic);
-        options.goal = {};
+        builder::LocalOptions options;
         options.sharing = false;
         options.columns = 12;
         options.rows = 6;
         options.fit.fit = fit;
         options.fit.phi_segments = options.fit.theta_segments = 12;
-        expect_serves_points(options, "fit " + std::to_string(int(fit)));
+        const MadeLocal made(sky(false), options);
+        ASSERT_FALSE(made.local.bytes.empty());
+        const build::Accuracy whole = build::measure_whole(made.file, builder::grid_of(sky(false)));
+        EXPECT_EQ(whole.support_violations, 0u) << fit;
+        EXPECT_LT(whole.relative_variance, fit == ACDF_FIT_UNIFORM ? INFINITY : 1.0) << fit;
+        expect_samples_agree(made.file.local().environment(), fit == ACDF_FIT_PDF ? 1e-4f : 0.0f);
         if (acdf_test::kSanitized) break;
     }
 }

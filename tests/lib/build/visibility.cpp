@@ -67,10 +67,10 @@ TEST(VisibilityFiles, FillTheirBudget) {
 /// A size that cannot be had is reported in bytes of the whole file.
 TEST(VisibilityFiles, AreNotMadeLargerThanTheirBudget) {
     builder::Local result;
-    const builder::Status status = builder::local(target(), with_visibility(4 << 10), result);
+    const builder::Status status = builder::local(target(), with_visibility(2 << 10), result);
     EXPECT_EQ(status.code, builder::ErrorCode::out_of_reach);
     const std::string text = status.message,
-                      start = "a size of 4096 bytes is out of reach; the smallest possible is about ";
+                      start = "a size of 2048 bytes is out of reach; the smallest possible is about ";
     ASSERT_EQ(text.rfind(start, 0), 0u) << text;
     const std::uint64_t least = std::stoull(text.substr(start.size())), enough = least + least / 4;
     const Built built(with_visibility(enough));

@@ -2,7 +2,7 @@
 #include "tests/inputs/directions.h"
 
 #include "build/accuracy/environment.h"
-#include "compress/fit/fit.h"
+#include "compress/halvings/fit.h"
 #include "compress/store/store.h"
 
 #include <gtest/gtest.h>
@@ -103,11 +103,11 @@ TEST(Target, ChannelsThatAreMoreThanAFloatTogetherAreRefused) {
 
 /// A file that fits `target`, and how it serves `other`.
 build::Accuracy measured(const compress::Target& target, const compress::Target& other, std::uint32_t cells) {
-    compress::FitOptions fit;
+    compress::HalvingsOptions fit;
     fit.goal.cells = cells;
     compress::Description description = compress::environment_description(kColumns, kRows);
     description.total = target.total;
-    const std::vector<std::uint8_t> bytes = compress::store(compress::fit(target, fit).tree, description);
+    const std::vector<std::uint8_t> bytes = compress::store(compress::fit_halvings(target, fit), description);
     File file;
     const Status status = File::from_memory(bytes.data(), bytes.size(), file);
     EXPECT_TRUE(status.ok()) << status.message;
@@ -118,11 +118,11 @@ TEST(Target, TheSumOfTheChannelsVariancesIsWhatIsMeasured) {
     const std::vector<float> rgb = noisy_map();
     const compress::Target target = compress::environment_target(
         rgb.data(), kColumns, kRows, options(ACDF_CHANNELS_SEPARATE, ACDF_FILTER_NEAREST));
-    compress::FitOptions fit;
+    compress::HalvingsOptions fit;
     fit.goal.cells = 20;
     compress::Description description = compress::environment_description(kColumns, kRows);
     description.total = target.total;
-    const std::vector<std::uint8_t> bytes = compress::store(compress::fit(target, fit).tree, description);
+    const std::vector<std::uint8_t> bytes = compress::store(compress::fit_halvings(target, fit), description);
     File file;
     ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
     const EnvironmentView view = file.environment();

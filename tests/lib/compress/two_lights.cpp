@@ -112,18 +112,6 @@ TEST_P(TwoLights, GradientAloneFindsAllBorders) {
     EXPECT_EQ(cascade_.curves[0].knots, (std::vector<std::uint32_t>{kB, kC, kD}));
 }
 
-TEST_P(TwoLights, VarianceNeedsNoHelp) {
-    FitOptions options;
-    options.fit = ACDF_FIT_VARIANCE;
-    options.order = GetParam();
-    options.goal.cells = 16;
-    store_fit(options);
-    EXPECT_LT(relative_variance(), 1e-6);
-    EXPECT_GT(pdf(kB + 2, kLow[0] + 1), 0.0);
-    EXPECT_EQ(pdf(kB + 2, kHigh[0] + 1), 0.0);
-    EXPECT_EQ(pdf(kC + 2, kLow[0] + 1), 0.0);
-}
-
 // The lights begin and end at even rows: halvings find their borders with codes that are exactly 0 and 1.
 TEST_P(TwoLights, HalvingsNeedNoHelp) {
     HalvingsOptions options;

@@ -22,8 +22,8 @@ void divide(AcdfCut& cut, std::mt19937_64& rng, bool deep) {
     cut.split[split].child[0] = static_cast<std::int16_t>(~part);
     cut.split[split].child[1] = static_cast<std::int16_t>(~cut.count);
     if (split > 0) cut.split[lower.owner >> 1].child[lower.owner & 1] = static_cast<std::int16_t>(split);
-    lower.owner = static_cast<std::uint16_t>(2 * split);
-    upper.owner = static_cast<std::uint16_t>(2 * split + 1);
+    lower.owner = static_cast<std::uint32_t>(2 * split);
+    upper.owner = static_cast<std::uint32_t>(2 * split + 1);
     ++cut.count;
 }
 

@@ -88,10 +88,7 @@ class Built(unittest.TestCase):
         self.assertLessEqual(light.size, 65536)
         w, p = light.sample([0, 0, 1], np.random.default_rng(3).random((1000, 2)))
         self.assertGreater((w[:, 2] > 0).mean(), 0.9)
-        small = acdf.build_local(sky_image(16), budget="64KiB", shape="small", threads=1)
-        self.assertEqual(small.info()["options"], "--shape small --budget 65536")
-        with self.assertRaisesRegex(ValueError, "shape"):
-            acdf.build_local(sky_image(16), shape="round")
+        self.assertEqual(light.info()["options"], "--budget 65536")
         named = acdf.build_local(sky_image(16), budget="64KiB", normals=[[0, 0, 1], [0, 1, 0]], normal_weights=[3, 1])
         self.assertNotEqual(named.to_bytes(), light.to_bytes())
         with self.assertRaisesRegex(ValueError, "normal_weights: 3 of them for 1 normals"):

@@ -7,7 +7,7 @@
 #include "tests/lib/reader/brdf_builder.h"
 #include "tests/lib/reader/count_allocations.h"
 #include "tests/lib/reader/load.h"
-#include "tests/lib/reader/local_random.h"
+#include "tests/lib/reader/normals_builder.h"
 #include "tests/lib/reader/planes.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ std::vector<Named> good_files() {
                                 {"complete", complete_environment().encode()},
                                 {"planes", as_planes(preorder_environment()).encode()},
                                 {"compressed_environment", compressed(complete_environment())},
-                                {"compressed_local", compressed(lit_local())},
+                                {"compressed_local", compressed(windowed_normals())},
                                 {"compressed_brdf", compressed(separate_brdf())}};
     for (const auto& entry : std::filesystem::directory_iterator(ACDF_TEST_DIR "/golden/v1.0")) {
         if (entry.path().extension() != ".acdf") continue;
@@ -250,8 +250,7 @@ EnvironmentSpec many_paths(int n) {
 }
 
 LocalSpec many_bins(int n) {
-    LocalSpec spec = lit_local();
-    spec.subdivisions = 0;
+    LocalSpec spec = separate_local();
     spec.bin_columns = static_cast<std::uint32_t>(n);
     spec.bin_rows = 8;
     spec.bins.assign(8 * static_cast<std::size_t>(n), spec.bins[0]);
@@ -303,94 +302,20 @@ TEST_P(Work, isLinearInTheBytes) {
     EXPECT_LT(much, 60 * large.size());
 }
 
-// n segments of which all but one have a probability of 2^-32: cells that no grid distinguishes.
-EnvironmentSpec thin_cells(int n) {
-    EnvironmentSpec spec;
-    spec.columns = static_cast<std::uint32_t>(n);
-    CurveSpec curve;
-    curve.cumulative_bytes = 4;
-    curve.position_bytes = 4;
-    for (int i = 1; i < n; ++i) {
-        curve.cumulative.push_back(static_cast<std::uint32_t>(i));
-        curve.positions.push_back(static_cast<std::uint32_t>(i));
-    }
-    spec.tree.curves = {curve};
-    return spec;
-}
-
-// n segments, of which `sharing` share a curve of as many: far more cells than bytes, or as many as they allow.
-EnvironmentSpec shared_cells(int n, int sharing) {
-    EnvironmentSpec spec = thin_cells(n);
-    spec.rows = spec.columns;
-    CurveSpec child = spec.tree.curves[0];
-    child.axis = 1;
-    CurveSpec& root = spec.tree.curves[0];
-    root.link_bytes = 4;
-    for (int i = 0; i < n; ++i) root.children.push_back(i < sharing ? 1 : -1);
-    spec.tree.curves.push_back(child);
-    return spec;
-}
-
-// The curves of shared_cells in the only tile of a local environment.
-LocalSpec shared_cells_in_a_tile(int n) {
-    const EnvironmentSpec cells = shared_cells(n, n);
-    LocalSpec spec = shared_local();
-    spec.columns = cells.columns;
-    spec.rows = cells.rows;
-    spec.tree = cells.tree;
-    spec.tiles = 1;
-    spec.splits.clear();
-    spec.tile_curves = {0};
-    spec.codes = {{}, {}};
-    return spec;
-}
-
-std::uint64_t blocks_to_make_tables(const Bytes& file) {
-    const auto load = [&](bool tables) {
-        acdf::LoadOptions options;
-        options.tables = tables;
-        acdf::File loaded;
-        const std::uint64_t before = blocks;
-        EXPECT_TRUE(acdf::File::from_memory(file.data(), file.size(), loaded, options).ok());
-        EXPECT_LE(loaded.table_bytes(), 8 * file.size() + (1u << 20));
-        return blocks - before;
-    };
-    return load(true) - load(false);
-}
-
-// Whatever paths lead to, and however thin cells are. Small grids have some work of their own.
-TEST(TableWork, isLinearInTheBytes) {
-    const struct {
-        std::function<Bytes(int)> make;
-        std::uint64_t least; // that something was counted
-    } kinds[] = {{[](int n) { return shared_cells_in_a_tile(n).encode(); }, 1000}};
-    for (const auto& [make, least] : kinds) {
-        const Bytes small = make(300), large = make(1200);
-        const std::uint64_t little = blocks_to_make_tables(small), much = blocks_to_make_tables(large);
-        if (!ACDF_COUNTS_WORK) continue;
-        const double sizes = static_cast<double>(large.size()) / static_cast<double>(small.size());
-        std::printf("%zu bytes: %.1f blocks a byte; %zu bytes: %.1f\n", small.size(),
-                    static_cast<double>(little) / static_cast<double>(small.size()), large.size(),
-                    static_cast<double>(much) / static_cast<double>(large.size()));
-        EXPECT_GT(little, least);
-        EXPECT_LT(static_cast<double>(much), 1.2 * sizes * static_cast<double>(little));
-        EXPECT_LT(much, 500 * large.size());
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Files, Work,
-    testing::Values(Growing{"exponentially_many_paths", [](int n) { return many_paths(n).encode(); }, 200},
-                    Growing{"a_finding_a_curve", wrong_everywhere, 200},
-                    Growing{"bins_with_lights", [](int n) { return many_bins(n).encode(); }, 500},
-                    Growing{"metadata", much_metadata, 500},
-                    Growing{"curves_of_two_bytes",
-                            [](int n) {
-                                EnvironmentSpec spec;
-                                spec.tree.curves.assign(static_cast<std::size_t>(n), CurveSpec());
-                                return spec.encode();
-                            },
-                            10000}),
-    [](const testing::TestParamInfo<Growing>& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Files, Work,
+                         testing::Values(Growing{"exponentially_many_paths",
+                                                 [](int n) { return many_paths(n).encode(); }, 200},
+                                         Growing{"a_finding_a_curve", wrong_everywhere, 200},
+                                         Growing{"bins", [](int n) { return many_bins(n).encode(); }, 500},
+                                         Growing{"metadata", much_metadata, 500},
+                                         Growing{"curves_of_two_bytes",
+                                                 [](int n) {
+                                                     EnvironmentSpec spec;
+                                                     spec.tree.curves.assign(static_cast<std::size_t>(n),
+                                                                             CurveSpec());
+                                                     return spec.encode();
+                                                 },
+                                                 10000}),
+                         [](const testing::TestParamInfo<Growing>& info) { return std::string(info.param.name); });
 
 } // namespace

@@ -1,7 +1,7 @@
 // Loading: damage of every kind, memory of every alignment, compression, metadata, files.
 #include "tests/lib/reader/load.h"
 #include "tests/lib/reader/files.h"
-#include "tests/lib/reader/local_builder.h"
+#include "tests/lib/reader/normals_builder.h"
 #include "tests/lib/reader/planes.h"
 
 #include <acdf/acdf.h>
@@ -144,7 +144,7 @@ TEST(Versions, errorCodesSayWhoIsToBlame) {
 }
 
 TEST(Versions, otherKindsLoad) {
-    const Bytes file = shared_local().encode();
+    const Bytes file = small_normals().encode();
     File loaded;
     ASSERT_TRUE(File::from_memory(file.data(), file.size(), loaded).ok());
     EXPECT_EQ(loaded.kind(), ACDF_KIND_LOCAL);

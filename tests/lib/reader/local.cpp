@@ -4,6 +4,7 @@
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/local_reference.h"
+#include "tests/lib/reader/normals_builder.h"
 
 #include <acdf/acdf.h>
 #include <acdf/reader.h>
@@ -182,7 +183,7 @@ TEST(NormalBins, everyCornerServesItself) {
 }
 
 TEST(LocalView, invalidNormalsHavePdfZero) {
-    const LoadedLocal shared(lit_local()), separate(separate_local());
+    const LoadedLocal shared(small_normals().encode()), separate(separate_local());
     const float up[3] = {0.0f, 0.0f, 1.0f}, nan = std::nanf(""), inf = HUGE_VALF;
     const float bad[][3] = {{0, 0, 0},   {-0.0f, 0, 0}, {nan, 0, 1},   {0, nan, 1},
                             {1, 0, nan}, {inf, 0, 1},   {0, -inf, inf}};
@@ -198,10 +199,10 @@ TEST(LocalView, invalidNormalsHavePdfZero) {
 }
 
 TEST(LocalView, invalidDirectionsHavePdfZero) {
-    LocalSpec spec = lit_local();
+    NormalsSpec spec = small_normals();
     for (float cosine : {0.0f, 0.5f}) {
         spec.cosine_share = cosine;
-        const LoadedLocal loaded(spec);
+        const LoadedLocal loaded(spec.encode());
         const float up[3] = {0.1f, 0.2f, 1.0f}, nan = std::nanf("");
         const float nans[][3] = {{nan, 0, 0}, {0, 0, nan}, {1, nan, 0}};
         for (const auto& d : nans) EXPECT_EQ(loaded.view().pdf(up, d), 0.0f);
@@ -211,7 +212,7 @@ TEST(LocalView, invalidDirectionsHavePdfZero) {
 }
 
 TEST(LocalView, storedFiguresAreReturned) {
-    const LoadedLocal shared(shared_local()); // corners 0 +z, 1 +x, 2 +y, 3 -x (not stored), 4 -y, 5 -z
+    const LoadedLocal shared(small_normals().encode()); // corners 0 +z, 1 +x, 2 +y, 3 -x (not stored), 4 -y, 5 -z
     const auto stored = [&](float x, float y, float z) {
         const float n[3] = {x, y, z};
         return shared.view().stored(n);
@@ -231,60 +232,6 @@ TEST(LocalView, storedFiguresAreReturned) {
     }
 }
 
-// By hand: at +x row 1 rules, of codes 200 and 255: columns [0, 3) have 200/255 of all, the rest is in tile 1.
-TEST(LocalView, handMadePdfs) {
-    LocalSpec spec = shared_local();
-    spec.tile_curves.clear(); // all tiles are cells
-    spec.tree = {{CurveSpec{}}, {}};
-    const LoadedLocal loaded(spec);
-    const float x[3] = {7.0f, 0.0f, 0.0f};
-    const auto at = [&](double column, double row) { // positions
-        const double phi = pi - 2 * pi * column / 8, theta = pi * row / 8;
-        const float d[3] = {static_cast<float>(std::sin(theta) * std::cos(phi)),
-                            static_cast<float>(std::sin(theta) * std::sin(phi)),
-                            static_cast<float>(std::cos(theta))};
-        return static_cast<double>(loaded.view().pdf(x, d));
-    };
-    const double left = 200.0 / 255.0 / (2 * pi * 3 / 8 * 2);
-    const double above = 55.0 / 255.0 / (2 * pi * 5 / 8 * (1 - std::cos(pi / 4)));
-    EXPECT_NEAR(at(0.5, 1.5) / left, 1.0, 1e-6);
-    EXPECT_NEAR(at(2.9, 7.5) / left, 1.0, 1e-6);
-    EXPECT_NEAR(at(3.1, 1.9) / above, 1.0, 1e-6);
-    EXPECT_NEAR(at(7.9, 0.1) / above, 1.0, 1e-6);
-    EXPECT_EQ(at(7.9, 2.1), 0.0);
-    EXPECT_NEAR(loaded.view().irradiance(x), 3.0 * 0.25, 1e-6);
-    const float xy[3] = {1.0f, 1.0f, 0.0f}; // halfway to +y: E = (E(+x) + E(+y)) / sqrt(2)
-    EXPECT_NEAR(loaded.view().irradiance(xy), 3.0 * (0.25 + 0.125) / std::sqrt(2.0), 1e-6);
-}
-
-// A light's part of the samples by hand: half of its flux above the horizon where its middle is on it.
-TEST(LocalView, handMadeLight) {
-    LocalSpec spec = lit_local();
-    spec.bright_tiles[0].radius = 0.1f;
-    spec.bright_tiles[0].share = 2.0f;
-    const LoadedLocal loaded(spec);
-    const double h[] = {0.8, 0.05, 0.0, -0.05, -0.1, -0.2};
-    const double weight[] = {1.6, 2 * 0.15 * 0.15 / 0.4, 2 * 0.1 * 0.1 / 0.4, 2 * 0.05 * 0.05 / 0.4, 0.0, 0.0};
-    for (std::size_t i = 0; i < std::size(h); ++i) {
-        // The light is at (0.6, 0, 0.8); (0.8, 0, -0.6) is at right angles to it.
-        const double c = std::sqrt(1 - h[i] * h[i]);
-        const float n[3] = {static_cast<float>(0.6 * h[i] + 0.8 * c), 0.0f,
-                            static_cast<float>(0.8 * h[i] - 0.6 * c)};
-        AcdfLocalPoint source;
-        acdf_local_at(&loaded.view().data(), n, &source);
-        EXPECT_NEAR(source.bright_tiles / source.length, weight[i], 1e-6) << h[i];
-        int lit = 0;
-        for (int k = 0; k < 10000; ++k) {
-            const auto s = loaded.view().sample(n, (k + 0.5) / 10000, 0.5);
-            std::uint32_t square[2] = {8, 8};
-            double column = 0.0;
-            acdf_sphere_square(8, 8, s.direction, square, &column);
-            lit += square[0] >= 3 && square[1] < 2;
-        }
-        EXPECT_NEAR(lit / 10000.0, source.bright_tiles / source.sum, 2e-4) << h[i];
-    }
-}
-
 TEST(LocalView, compiledAsCIsTheSame) {
     for (std::uint32_t seed = 0; seed < 8; ++seed) {
         const LoadedLocal loaded(random_local(seed, true));
@@ -301,14 +248,14 @@ TEST(LocalView, compiledAsCIsTheSame) {
 }
 
 TEST(LocalView, throughTheCInterface) {
-    Bytes bytes = lit_local().encode();
+    Bytes bytes = small_normals().encode();
     AcdfFile* file = acdf_from_memory(bytes.data(), bytes.size(), nullptr);
     ASSERT_NE(file, nullptr);
     AcdfLocal local;
     AcdfEnvironment environment;
     ASSERT_TRUE(acdf_local(file, &local));
     EXPECT_FALSE(acdf_environment(file, &environment));
-    const LoadedLocal same(lit_local());
+    const LoadedLocal same(small_normals().encode());
     const float n[3] = {1.0f, 0.5f, 2.0f};
     const auto a = same.view().sample(n, 0.3, 0.7), b = acdf_local_sample(&local, n, 0.3, 0.7);
     EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);

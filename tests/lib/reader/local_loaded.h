@@ -1,7 +1,7 @@
 // A local environment file written by hand, and loaded.
 #pragma once
 
-#include "tests/lib/reader/local_builder.h"
+#include "tests/lib/reader/normals_builder.h"
 
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -15,6 +15,7 @@ struct LoadedLocal {
     acdf::File file;
 
     explicit LoadedLocal(LocalSpec spec) : LoadedLocal(spec.encode()) {}
+    explicit LoadedLocal(const NormalsSpec& spec) : LoadedLocal(spec.encode()) {}
     explicit LoadedLocal(Bytes of) : bytes(std::move(of)) {
         const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
         EXPECT_TRUE(status.ok()) << status.message;

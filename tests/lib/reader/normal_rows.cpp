@@ -128,6 +128,24 @@ TEST(NormalRows, pdfIsThatOfTheSample) {
     }
 }
 
+TEST(NormalRows, lookupsAreDescents) {
+    for (std::uint32_t seed = 0; seed < 40; ++seed) {
+        std::mt19937_64 random(seed);
+        std::uniform_real_distribution<double> unit(0.0, 1.0);
+        const NormalsSpec spec = random_normals(seed);
+        const OpenedNormals fast(spec), plain(spec, false);
+        for (int n = 0; n < 300; ++n) {
+            const AnyVector normal = any_direction(random), direction = any_direction(random);
+            const double u0 = unit(random), u1 = unit(random);
+            EXPECT_EQ(fast.view().pdf(normal.data(), direction.data()),
+                      plain.view().pdf(normal.data(), direction.data()));
+            const acdf::DirectionSample a = fast.view().sample(normal.data(), u0, u1),
+                                        b = plain.view().sample(normal.data(), u0, u1);
+            EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0) << seed << ' ' << n;
+        }
+    }
+}
+
 /// Over rectangles of grid squares.
 TEST(NormalRows, samplesFollowThePdf) {
     const AnyVector normal = {0.4f, -0.6f, 0.7f};
@@ -170,6 +188,8 @@ TEST(NormalRows, irradianceIsTheLightOfTheBins) {
     const float up[3] = {0.0f, 0.0f, 2.0f}, down[3] = {0.0f, 0.0f, -1.0f};
     EXPECT_NEAR(opened.view().irradiance(up), spec.tree.total * double{spec.bins[0].share}, 1e-12);
     EXPECT_NEAR(opened.view().irradiance(down), spec.tree.total * double{spec.bins[5].share}, 1e-12);
+    const float between[3] = {1.0f, 1.0f, 0.0f}; // halfway from +x to +y
+    EXPECT_NEAR(opened.view().irradiance(between), spec.tree.total * (0.25 + 0.125) / std::sqrt(2.0), 1e-12);
     const float unstored[3] = {-1.0f, 0.0f, 0.0f}; // bin 3
     EXPECT_FALSE(opened.view().stored(unstored));
     EXPECT_EQ(opened.view().irradiance(unstored), spec.tree.total);

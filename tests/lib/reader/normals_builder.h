@@ -1,11 +1,14 @@
-// Local environments on one tree of halvings, byte by byte (SPEC.md §10.6).
+// Local environments on one tree of halvings, byte by byte (SPEC.md §9).
 #pragma once
 
 #include "tests/lib/reader/local_builder.h"
+#include "tests/lib/reader/portals_spec.h"
 #include "tests/lib/reader/random_halvings.h"
+#include "tests/lib/reader/visibility_spec.h"
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -24,6 +27,8 @@ struct NormalsSpec {
     std::vector<std::vector<std::uint32_t>> rows; ///< a code for each of those
     std::vector<BinSpec> bins;                    ///< root: the row; no_root: not stored
     float cosine_share = 0.0f;
+    std::optional<VisibilitySpec> visibility;
+    std::optional<PortalsSpec> portals;
     bool zlib = false;
 
     /// The cells of a row, in preorder.
@@ -52,7 +57,7 @@ struct NormalsSpec {
         return out;
     }
 
-    /// DESC, HALV, BINS, LOCL, NORM.
+    /// DESC, HALV, BINS, LOCL, NORM; PLAC and PORT where they are there.
     FileSpec file() const {
         EnvironmentSpec copy = tree;
         FileSpec out = copy.file();
@@ -70,6 +75,8 @@ struct NormalsSpec {
         out.chunks.push_back({"BINS", acdf_test::encode(bins), 1, zlib});
         out.chunks.push_back({"LOCL", local.local_chunk(), 1, zlib});
         out.chunks.push_back({"NORM", normals_chunk(), 1, zlib});
+        if (visibility) out.chunks.push_back({"PLAC", visibility->encode(), 0, zlib});
+        if (portals) out.chunks.push_back({"PORT", portals->encode(), 0, zlib});
         return out;
     }
     Bytes encode() const { return file().encode(); }
@@ -141,6 +148,45 @@ inline NormalsSpec small_normals() {
     spec.own = {true, true, false};
     spec.rows = {{100, 20}, {30, 127}};
     spec.bins = {{0, 0.5f}, {1, 0.25f}, {0, 0.125f}, {no_root, 0.0f}, {1, 0.5f}, {0, 0.75f}};
+    return spec;
+}
+
+/// small_normals with four cells: x < 1; above it y < 0.5; the rest, by the z of normals. All three tiles are told
+/// apart.
+inline NormalsSpec visible_normals() {
+    NormalsSpec spec = small_normals();
+    spec.visibility.emplace();
+    spec.visibility->splits = {{1.0f, 0.25f, 0, {visibility_row, 1}},
+                               {0.5f, 0.5f, 1, {visibility_row | 1, 2}},
+                               {0.1f, 0.2f, 5, {visibility_row | 2, visibility_row | 3}}};
+    spec.visibility->columns = {{2, 0}, {1, no_lower_column}};
+    spec.visibility->rows = {{240, 200, 60}, {200, 1, 254}, {0, 128, 9}, {90, 30, 250}};
+    return spec;
+}
+
+/// The same with one column alone, at the last tile in some cells and at the one before in others.
+inline NormalsSpec regional_normals() {
+    NormalsSpec spec = visible_normals();
+    spec.visibility->further_sets = 1;
+    spec.visibility->columns = {{2, no_lower_column}, {1, no_lower_column}};
+    spec.visibility->set_of_row = {0, 1, 1, 0};
+    for (Bytes& row : spec.visibility->rows) row.resize(2);
+    return spec;
+}
+
+/// visible_normals with two portals in a wall at x = 4 and one in a wall at y = 3; the last cell samples by rows
+/// alone.
+inline NormalsSpec windowed_normals() {
+    NormalsSpec spec = visible_normals();
+    spec.portals.emplace();
+    spec.portals->portals = {
+        {{4, -1, 0.5f}, {1, 2}, 0}, {{4, 0.5f, 1}, {1.5f, 1.5f}, 0}, {{1.5f, 3, 1}, {2, 1}, 1}};
+    spec.portals->maps = {
+        {{0, 1, 0, 0, 0, 1, 1, 0, 0}, 0.01f, {1, 2, 3, 4, 5, 60, 7, 8, 0, 9, 10, 11, 12, 13, 14, 1}},
+        {{-1, 0, 0, 0, 0, 1, 0, 1, 0}, 0.02f, {9, 2, 3, 4, 5, 6, 7, 30, 9, 9, 10, 0, 1, 3, 14, 1}}};
+    for (Bytes& row : spec.portals->rows = std::vector<Bytes>(4, Bytes(13, 250))) row[0] = 40;
+    spec.portals->rows[1] = {5, 255, 240, 30, 200, 100, 255, 255, 254, 230, 180, 70, 255};
+    spec.portals->rows[3][0] = 255;
     return spec;
 }
 

@@ -21,7 +21,7 @@ constexpr float kInside[][3] = {{0, 0, 1},       {2, -1, 1}, {2, 1.5f, 1}, {1.1f
 TEST(Portals, SamplesHaveThePdfThatIsFoundForThem) {
     float share = 0.0f;
     for (int kind = 0; kind < 2; ++kind, share = 0.25f) {
-        LocalSpec spec = windowed_local();
+        NormalsSpec spec = windowed_normals();
         spec.cosine_share = share;
         const LoadedLocal loaded(spec);
         ASSERT_TRUE(loaded.view().has_portals());
@@ -46,7 +46,7 @@ TEST(Portals, SamplesHaveThePdfThatIsFoundForThem) {
 
 /// Directions that a row never samples are sampled through no portal alone, and what a row samples stays so.
 TEST(Portals, NothingThatANormalSeesIsLost) {
-    const LoadedLocal loaded(windowed_local());
+    const LoadedLocal loaded(windowed_normals());
     std::mt19937_64 random(8);
     std::normal_distribution<double> normal;
     for (int i = 0; i < 100000; ++i) {
@@ -94,7 +94,7 @@ Histogram expected_of(const acdf::LocalEnvironmentView& view, const AcdfLocalPoi
 
 /// Chi square over bins of enough samples; the pdf integrates to 1.
 TEST(Portals, DirectionsFallWhereThePdfSays) {
-    const LoadedLocal loaded(windowed_local());
+    const LoadedLocal loaded(windowed_normals());
     std::mt19937_64 random(9);
     const struct { int position, normal; } cases[] = {{0, 0}, {1, 1}, {3, 3}, {6, 0}};
     for (const auto& c : cases) {
@@ -131,7 +131,7 @@ TEST(Portals, DirectionsFallWhereThePdfSays) {
 /// Strata of random numbers stay together: next to each other, u sample directions of the same piece or of the
 /// next.
 TEST(Portals, NumbersAreClampedAndAtTheEndsSafe) {
-    const LoadedLocal loaded(windowed_local());
+    const LoadedLocal loaded(windowed_normals());
     const AcdfLocalPoint point = loaded.view().at(kInside[0], kNormalsInside[0]);
     for (double u0 : {0.0, 1.0, -1.0, 2.0, std::nan(""), 0.16, 0.16015625})
         for (double u1 : {0.0, 1.0, -1.0, 2.0, std::nan("")}) {
@@ -147,7 +147,7 @@ TEST(Portals, NumbersAreClampedAndAtTheEndsSafe) {
 /// Cells without light stand between those with light, and at the ends: nothing is sampled there, whatever the
 /// numbers.
 TEST(Portals, NothingIsSampledInCellsWithoutLight) {
-    LocalSpec spec = windowed_local();
+    NormalsSpec spec = windowed_normals();
     for (PortalMapSpec& map : spec.portals->maps) map.light = {0, 0, 0, 0, 0, 5, 7, 0, 0, 0, 9, 0, 0, 0, 0, 0};
     const LoadedLocal loaded(spec);
     int seen = 0;
@@ -156,7 +156,7 @@ TEST(Portals, NothingIsSampledInCellsWithoutLight) {
             const AcdfLocalPoint point = loaded.view().at(x, n);
             if (point.portals == 0) continue;
             ++seen;
-            const double row = point.by.place.portals.of_row;
+            const double row = point.place.portals.of_row;
             for (double u0 : {row, row + 0x1p-53, 0.5 + 0.5 * row, 0.75 + 0.25 * row, 1.0 - 0x1p-24, 1.0})
                 for (double u1 : {0.0, 0x1p-30, 0.25, 0.5, 0.75, 1.0 - 0x1p-53, 1.0}) {
                     const acdf::DirectionSample s = loaded.view().sample(point, u0, u1);
@@ -169,7 +169,7 @@ TEST(Portals, NothingIsSampledInCellsWithoutLight) {
 
 /// What a portal shows of a dark cell is nothing, whatever rounding makes of large sums around it.
 TEST(Portals, RoundingIsNoLight) {
-    LocalSpec spec = windowed_local();
+    NormalsSpec spec = windowed_normals();
     spec.portals->portals = {{{4, 0.3f, 1.3f}, {1, 2}, 0}};
     spec.portals->maps.resize(1);
     spec.portals->maps[0].unit = 1e30f;
@@ -187,7 +187,7 @@ TEST(Portals, RoundingIsNoLight) {
 
 /// A position that samples by its row alone, one behind a wall, one outside, and a normal alone see no portals.
 TEST(Portals, PositionsWithoutAPortalSampleTheirRow) {
-    const LoadedLocal loaded(windowed_local()), rows(visibility_local());
+    const LoadedLocal loaded(windowed_normals()), rows(visible_normals());
     const struct {
         float x[3], n[3];
     } cases[] = {{{2, 1.5f, 1}, {0, 0, 1}}, {{0, 0, 1}, {-1, -1, 0}}, {{9, 0, 1}, {1, 0, 0}}};

@@ -43,18 +43,18 @@ public:
         EnvironmentSpec spec;
         spec.columns = options_.columns;
         spec.rows = options_.rows;
-        spec.tree = make_within({0, 0}, {options_.columns, options_.rows});
+        spec.tree = make_tree();
         spec.root = 0;
         spec.octahedral = options_.octahedral;
         return spec;
     }
 
-    /// A tree within a box of positions on both axes; its root is curve 0.
-    TreeSpec make_within(const std::array<std::uint32_t, 2>& low, const std::array<std::uint32_t, 2>& high) {
-        const Range box[2] = {{low[0], high[0]}, {low[1], high[1]}};
+    /// A tree whose root is curve 0.
+    TreeSpec make_tree() {
+        const Range box[2] = {{0, options_.columns}, {0, options_.rows}};
         pool_.clear();
         shareable_.clear();
-        return in_file_order(grow(box, 0, 3, 1), low);
+        return in_file_order(grow(box, 0, 3, 1));
     }
 
     /// Gives links that do not reach their child more bytes; false where all do.
@@ -177,7 +177,7 @@ private:
     }
 
     // Children after all their parents; links as wide as they must be, or wider.
-    TreeSpec in_file_order(int root, const std::array<std::uint32_t, 2>& low) {
+    TreeSpec in_file_order(int root) {
         std::vector<char> seen(pool_.size(), 0);
         std::vector<int> order, place(pool_.size(), -1);
         visit(root, seen, order);
@@ -191,17 +191,17 @@ private:
                 if (child >= 0) child = place[static_cast<std::size_t>(child)];
             tree.curves.push_back(curve);
         }
-        choose_positions(tree, low);
+        choose_positions(tree);
         while (widen_links(tree)) {
         }
         return tree;
     }
 
     // One byte where every path to the curve brings the same low end and the knots are near it.
-    void choose_positions(TreeSpec& tree, const std::array<std::uint32_t, 2>& root_low) {
+    void choose_positions(TreeSpec& tree) {
         constexpr std::uint32_t unset = 0xFFFFFFFF, many = 0xFFFFFFFE;
         std::vector<std::array<std::uint32_t, 2>> lows(tree.curves.size(), {unset, unset});
-        lows[0] = root_low;
+        lows[0] = {0, 0};
         for (std::size_t i = 0; i < tree.curves.size(); ++i) {
             CurveSpec& curve = tree.curves[i];
             const std::uint32_t low = lows[i][curve.axis],

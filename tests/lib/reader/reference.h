@@ -397,8 +397,6 @@ private:
         if (type == "DESC") description_ = bytes;
         if (type == "BINS") bins_ = bytes;
         if (type == "TREE") tree_ = bytes;
-        if (type == "TILE") tiles_ = bytes;
-        if (type == "ROWS") rows_ = bytes;
         if (type == "LOCL") local_ = bytes;
         if (type == "HALV") halvings_ = bytes;
     }
@@ -457,7 +455,7 @@ private:
     }
 
 protected:
-    Bytes description_, bins_, tree_, tiles_, rows_, local_, halvings_;
+    Bytes description_, bins_, tree_, local_, halvings_;
 };
 
 } // namespace acdf_reference

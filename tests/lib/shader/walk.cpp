@@ -3,8 +3,8 @@
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/golden_files.h"
-#include "tests/lib/reader/local_builder.h"
 #include "tests/lib/reader/local_random.h"
+#include "tests/lib/reader/normals_builder.h"
 #include "tests/lib/reader/random.h"
 #include "tests/lib/shader/walked_file.h"
 
@@ -24,7 +24,7 @@ namespace {
 using namespace acdf_test;
 
 const std::uint32_t kStep = kSanitized ? 3 : 1; // from seed to seed
-// Of a pdf: what floats round on the way to a leaf; and of a light that hardly rises above the horizon.
+// Of a pdf: what floats round on the way to a leaf, and at most.
 constexpr double kNear = 1e-5, kRounded = 1e-3;
 
 using Vector = std::array<float, 3>;
@@ -76,9 +76,8 @@ public:
         }
         return pdf >= least && pdf <= most;
     }
-    /// What is rounded of a pdf, sr^-1: cosines to the normal, and of a light that no more than touches the
-    /// horizon.
-    double faint() const { return 2e-7 * cosine_share() + (shader_.bright_tiles > 0 ? 1e-6 : 1e-30); }
+    /// What is rounded of a pdf, sr^-1: cosines to the normal.
+    double faint() const { return 2e-7 * cosine_share() + 1e-30; }
     double cosine_share() const { return double{shader_.cosine}; }
     /// Whether the two differ in what serves the normal: on a border between bins that are served differently.
     bool differs() const {
@@ -86,7 +85,7 @@ public:
         const bool nothing = shader_.mix.root == ACDF_WALK_NONE;
         if (nothing != (reader_.what == ACDF_LOCAL_NOTHING)) return true;
         const bool mixed = shader_.mix.root == file_.tables.words()[ACDF_WALK_MIXTURE];
-        return !nothing && mixed != (reader_.what >= ACDF_LOCAL_BLEND);
+        return !nothing && mixed != (reader_.what == ACDF_LOCAL_ROWS);
     }
 
 private:
@@ -213,6 +212,20 @@ TEST(ShaderTraversal, AnswersAsTheReaderOnRandomLocalFiles) {
     EXPECT_GT(files, 120 / int(kStep));
     EXPECT_LT(all.other_cells, 1e-4 * all.draws);
     EXPECT_LT(all.rounded, 1e-4 * all.draws);
+    EXPECT_LT(all.other_normals, 2e-2 * all.normals);
+}
+
+// Random numbers lead to other tiles than the reader's, with the same pdfs.
+TEST(ShaderTraversal, HasThePdfsOfTheReaderOnRandomRows) {
+    WalkCounted all;
+    for (std::uint32_t seed = 0; seed < 80; seed += kStep) {
+        SCOPED_TRACE(seed);
+        const WalkedFile file(random_normals(seed).encode());
+        ASSERT_TRUE(file.status.ok()) << file.status.message;
+        all += compare_walk(file, 40, 8);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_LT(all.other_pdfs, 1e-3 * all.directions);
     EXPECT_LT(all.other_normals, 2e-2 * all.normals);
 }
 

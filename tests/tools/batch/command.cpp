@@ -356,7 +356,7 @@ TEST_F(BatchCommand, KilledAtAnyTimeItEndsWithTheSameBytes) {
     const std::size_t share = acdf_test::kSanitized ? 6 : 15; // of the files, until a kill
     write_small_probes(probes, static_cast<std::uint32_t>(10 * share / 3));
     std::vector<std::string> run = {probes, "--kind", "env,local"};
-    for (const char* set : {"env.cells=40", "local.budget=8KiB", "local.normals=2", "local.shape=small"})
+    for (const char* set : {"env.cells=40", "local.budget=8KiB", "local.normals=2"})
         run.insert(run.end(), {"--set", set});
     std::vector<std::string> arguments = run;
     arguments.insert(arguments.begin(), "batch");

@@ -108,12 +108,11 @@ TEST_F(BatchMemory, JobsTakeAboutWhatIsEstimated) {
     for (const char* options : {"--budget 1MiB", "--budget 256KiB --mis cosine --filter nearest"})
         jobs.push_back({"env", largest, options});
     jobs.push_back({"env", disc, "--projection angular --cells 100"}); // cut into half a million cells
-    for (const char* options :
-         {"--budget 32KiB", "--budget 128KiB --shape small",
-          "--budget 64KiB --domain octahedral", "--budget 128KiB --compress zlib --shape small",
-          "--budget 64KiB --mis cosine", "--budget 64KiB --mis cosine --heuristic power --domain octahedral",
-          "--budget 128KiB --shape small --channel rgb", "--budget 64KiB --normals 3 --max-weight 40",
-          "--no-sharing --fit cdf --normals 2"})
+    for (const char* options : {"--budget 32KiB", "--budget 128KiB", "--budget 64KiB --domain octahedral",
+                                "--budget 128KiB --compress zlib", "--budget 64KiB --mis cosine",
+                                "--budget 64KiB --mis cosine --heuristic power --domain octahedral",
+                                "--budget 128KiB --channel rgb", "--budget 64KiB --normals 3 --max-weight 40",
+                                "--budget 96KiB --cosine-share 0.2", "--no-sharing --fit cdf --normals 2"})
         jobs.push_back({"local", noise, options});
     const std::string mesh = folder / "floor.obj";
     write_text(mesh, "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 1\nv 1 0 1\nf 1 2 3 4\nf 5 6 3\n");

@@ -28,8 +28,8 @@ TEST_F(BatchCommand, RefusesManifestsBeforeAnythingStarts) {
     expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"b.acdf\", "
                           "\"options\": {\"cells\": 5, \"budget\": \"1KiB\"}}\n",
                    at2 + "options of env: ");
-    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"kind\": \"local\", \"options\": {\"shape\": true}}\n",
-                   at2 + "options of local: --shape: needs a value");
+    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"kind\": \"local\", \"options\": {\"tiles\": true}}\n",
+                   at2 + "options of local: --tiles: needs a value");
     const std::string two = "{\"maps\": [\"probes/a.pfm\", \"probes/a.pfm\"], \"output\": \"m.acdf\"";
     expect_refused(good + two + "}\n",
                    at2 + "options of env: several maps in one file are for env, and need an axis");

@@ -246,7 +246,7 @@ TEST(RenderSampler, MistakesAreNamed) {
         {"portals:x", "give portals or portals:uniform"},
         {"ris:0", "the number of candidates is"},
         {"product", "give product(LIGHT,BRDF)"},
-        {"local:1MB --shape slow", "is not an option"},
+        {"local:1MB --slow", "is not an option"},
         {"product:0(local,brdf)", "the number of parts is"},
         {"product:97(local,brdf)", "the number of parts is"},
         {"product(local)", "give product(LIGHT,BRDF)"},

@@ -18,7 +18,7 @@
 namespace acdf::tools {
 namespace {
 
-constexpr std::uint32_t kSamples = 64;
+constexpr std::uint32_t kSamples = 1024; // so many that rare ones are among them
 
 struct Viewed {
     test::SceneFolder folder;

@@ -1,5 +1,6 @@
 #include "compress/local/halved/blocks.h"
 
+#include "compress/boxes.h"
 #include "compress/parallel.h"
 
 #include <acdf/octahedral.h>

@@ -11,6 +11,12 @@
 
 namespace acdf::compress {
 
+/// Light times `unit`, one over the mean. What is lit stays so in squares, and times small areas and cosines.
+inline float relative_light(float light, double unit) {
+    constexpr float least = 1e-15f;
+    return light > 0.0f ? std::max(static_cast<float>(double{light} * unit), least) : 0.0f;
+}
+
 /// All directions of a box. They lie above the horizon of a normal whose cosine to the axis is at least `sine`, and
 /// below it where that is at most -sine.
 struct BoxCone {

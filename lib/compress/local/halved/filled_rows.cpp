@@ -1,6 +1,6 @@
 #include "compress/local/halved/filled_rows.h"
 
-#include "compress/local/least_share.h"
+#include "compress/local/halved/least_share.h"
 #include "compress/parallel.h"
 
 #include <algorithm>

@@ -48,13 +48,13 @@ void LocalHalvingsFitter::weigh_light(SomeNormals normals) {
     const auto integrate = [&](BlockMoments& moments, const auto& of) {
         moments.integrate([&](std::uint32_t r, float* out) {
             const float* row = target_.row(r);
-            for (std::uint32_t c = 0; c < target_.columns; ++c) out[c] = positive_float(of(double{row[c]} * unit_));
+            for (std::uint32_t c = 0; c < target_.columns; ++c) out[c] = of(relative_light(row[c], unit_));
             return out;
         });
     };
     squares_.emplace(blocks_);
-    integrate(light_, [](double light) { return light; });
-    integrate(*squares_, [](double light) { return light * light; });
+    integrate(light_, [](float light) { return light; });
+    integrate(*squares_, [](float light) { return light * light; });
     weigh_by_light(blocks_, light_, normals);
     shared_.emplace(blocks_, worth_of_blocks(blocks_, normals), unit_);
     costs_.emplace(blocks_, light_, std::vector<LitNormals>{{&light_, std::move(normals)}});
@@ -72,7 +72,7 @@ void LocalHalvingsFitter::fill_light(SomeNormals normals, double ratio) {
             const float* row = target_.row(r);
             for (std::uint32_t c = 0; c < target_.columns; ++c) {
                 const HalvedBox block{blocks_.rows() + row_of[r], blocks_.columns() + column_of[c]};
-                const float light = positive_float(double{row[c]} * unit_);
+                const float light = relative_light(row[c], unit_);
                 out[c] = light > 0.0f ? of(light, filled.spread(block, light)) : 0.0f;
             }
             return out;

@@ -131,7 +131,7 @@ SharedLight::SharedLight(const Blocks& blocks, std::vector<float> worth, double 
         const float* of_row = worth_.data() + blocks.index({blocks.rows() + row[r], blocks.columns()});
         for (std::uint32_t c = 0; c < grid.columns; ++c) {
             float& value = values_[std::size_t{r} * grid.columns + c];
-            value = positive_float(double{grid.row(r)[c]} * unit * double{of_row[column[c]]});
+            value = relative_light(grid.row(r)[c], unit * double{of_row[column[c]]});
             sums[r] += double{value} * grid.column_measure[c];
         }
     });

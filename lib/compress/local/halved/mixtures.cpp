@@ -1,7 +1,7 @@
 #include "compress/local/halved/mixtures.h"
 
+#include "compress/local/halved/triangles.h"
 #include "compress/local/light.h"
-#include "compress/local/triangles.h"
 
 #include <algorithm>
 #include <cmath>

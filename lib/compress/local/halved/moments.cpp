@@ -1,5 +1,6 @@
 #include "compress/local/halved/moments.h"
 
+#include "compress/boxes.h"
 #include "compress/parallel.h"
 #include "compress/widths.h"
 

@@ -49,15 +49,15 @@ ACDF_FN void acdf_cut_borders(AcdfCut* cut, const double* share) {
         part->numbers[1][0] = numbers[2][at];
         part->numbers[1][1] = numbers[3][at];
     }
-    for (i = 0; i < cut->count; i += ACDF_BLOCK_CELLS) {
-        uint8_t* byte = (uint8_t*)cut->boxes[(uint32_t)i / ACDF_BLOCK_CELLS];
+    for (i = 0; i < cut->count; i += ACDF_BLOCK_BOXES) {
+        uint8_t* byte = (uint8_t*)cut->boxes[(uint32_t)i / ACDF_BLOCK_BOXES];
         const uint32_t* side = sides + ACDF_CUT_MAX_PARTS + ~i;
-        for (k = 0; k < ACDF_BLOCK_CELLS; ++k, ++byte) {
+        for (k = 0; k < ACDF_BLOCK_BOXES; ++k, ++byte) {
             const uint32_t box = i + k < cut->count ? side[-k] : 0x807F807Fu; /* which holds nothing */
             byte[0] = (uint8_t)box;
-            byte[ACDF_BLOCK_CELLS] = (uint8_t)(box >> 8);
-            byte[2 * ACDF_BLOCK_CELLS] = (uint8_t)(box >> 16);
-            byte[3 * ACDF_BLOCK_CELLS] = (uint8_t)(box >> 24);
+            byte[ACDF_BLOCK_BOXES] = (uint8_t)(box >> 8);
+            byte[2 * ACDF_BLOCK_BOXES] = (uint8_t)(box >> 16);
+            byte[3 * ACDF_BLOCK_BOXES] = (uint8_t)(box >> 24);
         }
     }
 }
@@ -81,65 +81,6 @@ ACDF_FN void acdf_cut_finish(AcdfCut* cut) {
     for (i = cut->count - 2; i >= 0; --i) /* a split's children stand behind it */
         share[i] = share[cut->split[i].child[0]] + share[cut->split[i].child[1]];
     acdf_cut_borders(cut, share);
-}
-
-/* Number by number: of a mixture that is copied as a whole, and then given other weights, nvcc 13.0 sums the old
- * ones. */
-ACDF_FN AcdfMixture acdf_cut_mixture(const AcdfLocalPoint* point, const AcdfCutPart* part) {
-    AcdfMixture mix;
-    int i;
-    mix.count = point->mix.count;
-    for (i = 0; i < ACDF_NORMALS_MIXED; ++i) {
-        mix.row[i] = point->mix.row[i];
-        mix.weight[i] = i < mix.count ? part->weight[i] : 0.0;
-    }
-    return mix;
-}
-
-ACDF_FN void acdf_cut_range(const AcdfCutPart* part, AcdfRange range[2]) {
-    int i;
-    for (i = 0; i < 2; ++i) {
-        range[i].low = part->low[i];
-        range[i].high = part->high[i];
-        range[i].tilt = 0.0;
-    }
-}
-
-/* What random numbers of a part's mixture are of all that it gives, which is returned. */
-ACDF_INLINE double acdf_cut_of_all(const AcdfMixture* mix, const double* u, double from[2]) {
-    const double whole = acdf_mixture_sum(mix);
-    from[0] = u[0] * whole;
-    from[1] = u[1] * whole;
-    return whole;
-}
-
-/* Samples a tile of a part from its mixture; *inside becomes its share of that. */
-ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part,
-                                      const AcdfMixture* mix, double* u, AcdfRange* range, double* inside) {
-    if (acdf_local_tabled(local)) {
-        const uint32_t* words = acdf_local_words(local->tables);
-        const AcdfTileTables* tables = &local->tables->tiles;
-        double from[2];
-        const double whole = acdf_cut_of_all(mix, u, from);
-        const uint32_t tile =
-            acdf_tile_sample(words, tables, mix, point->by.tabled.codes, part->entry, from, u, inside);
-        acdf_tile_range(acdf_tile_record(words, tables, tile), range);
-        *inside = acdf_positive(*inside / whole);
-        return tile;
-    }
-    return acdf_blend_sample_below(&local->blend, mix, part->node, u, range, inside);
-}
-
-/* Finds the tile of a square in a part, and its share of the part's mixture. */
-ACDF_FN uint32_t acdf_cut_find_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part,
-                                    const AcdfMixture* mix, const uint32_t* square, AcdfRange* range,
-                                    double* inside) {
-    if (acdf_local_tabled(local)) {
-        const uint32_t tile = acdf_tile_at(acdf_local_words(local->tables), &local->tables->tiles, square);
-        *inside = acdf_local_found_tile(local, point, mix, tile, part->depth, range);
-        return tile;
-    }
-    return acdf_blend_find_below(&local->blend, mix, part->node, square, range, 0, inside);
 }
 
 /* A number in [0, 1) of what is given. */
@@ -173,9 +114,9 @@ ACDF_INLINE int acdf_cut_guess(const AcdfCut* cut, const double u[2], int from) 
     for (first = from & ~63; first < cut->count; first += 64) {
         uint32_t mask[2] = {0, 0};
         int k;
-        for (k = 0; k < 4 && first + k * ACDF_BLOCK_CELLS < cut->count; ++k)
-            mask[k >> 1] |= acdf_cut_candidates(cut, first / ACDF_BLOCK_CELLS + k, step)
-                            << (k & 1) * ACDF_BLOCK_CELLS;
+        for (k = 0; k < 4 && first + k * ACDF_BLOCK_BOXES < cut->count; ++k)
+            mask[k >> 1] |= acdf_cut_candidates(cut, first / ACDF_BLOCK_BOXES + k, step)
+                            << (k & 1) * ACDF_BLOCK_BOXES;
         for (k = 0; k < 2; ++k) {
             const int passed = from - (first + 32 * k);
             if (passed > 0) mask[k] &= passed < 32 ? ~0u << passed : 0u;
@@ -200,82 +141,9 @@ ACDF_INLINE const AcdfCutPart* acdf_cut_sample_guessed(const AcdfCut* cut, int g
     return part;
 }
 
-/* Asks for what samples from a part read of it, and of rows where they begin in it. */
-ACDF_INLINE void acdf_cut_part_ahead(const AcdfCut* cut, int number) {
-    ACDF_PREFETCH(&cut->part[number].numbers[0][0]);
-    ACDF_PREFETCH(&cut->part[number].depth);
-}
-
 /* Samples a part. */
 ACDF_FN const AcdfCutPart* acdf_cut_choose_part(const AcdfCut* cut, double u[2]) {
-    const int number = acdf_cut_guess(cut, u, 0);
-    acdf_cut_part_ahead(cut, number);
-    return acdf_cut_sample_guessed(cut, number, u);
-}
-
-/* Whether u0 in [0, 1] samples a bright tile of a part, not from its mixture. */
-ACDF_INLINE int acdf_cut_samples_bright_tile(const AcdfCutPart* part, double u0) {
-    return (part->bright_tiles > 0.0) & ((u0 * part->sum < part->bright_tiles) | !(part->sum > part->bright_tiles));
-}
-
-/* Samples that light; u[0] becomes what is left of it, *probability that of the light. Returns its tile. */
-ACDF_FN uint32_t acdf_cut_sample_bright_tile(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part,
-                                             double* u, AcdfRange* range, double* probability) {
-    uint32_t k = part->first_light, chosen = part->end_light;
-    double x = u[0] * part->sum, weight = 0.0;
-    for (; k < part->end_light; ++k) {
-        if (!(cut->light[k] > 0.0)) continue;
-        if (chosen < part->end_light) x -= weight;
-        chosen = k;
-        weight = cut->light[k];
-        if (x < weight) break;
-    }
-    u[0] = acdf_unit_interval(x / weight);
-    for (k = 0; k < 2; ++k) {
-        range[k].low = local->bright_tiles[chosen].low[k];
-        range[k].high = local->bright_tiles[chosen].high[k];
-    }
-    *probability = acdf_positive(part->probability * (weight / part->sum));
-    return local->bright_tiles[chosen].tile;
-}
-
-/* u0 as a number of the part's mixture alone, where it samples from that. */
-ACDF_INLINE double acdf_cut_number_of_mixture(const AcdfCutPart* part, double u0) {
-    return acdf_unit_interval((u0 * part->sum - part->bright_tiles) / (part->sum - part->bright_tiles));
-}
-
-/* The probability of a tile that is `inside` of the part's mixture. */
-ACDF_INLINE double acdf_cut_tile_probability(const AcdfCutPart* part, const AcdfMixture* mix, double inside) {
-    return acdf_positive(part->probability * (acdf_mixture_sum(mix) / part->sum * inside));
-}
-
-/* Samples a cell of a part; u and range as in acdf_tree_sample. Returns its probability, > 0. */
-ACDF_FN double acdf_cut_sample_part(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
-                                    const AcdfCutPart* part, double* u, AcdfRange* range) {
-    double probability;
-    uint32_t tile;
-    if (acdf_cut_samples_bright_tile(part, u[0])) {
-        tile = acdf_cut_sample_bright_tile(local, cut, part, u, range, &probability);
-    } else {
-        const AcdfMixture mix = acdf_cut_mixture(point, part);
-        u[0] = acdf_cut_number_of_mixture(part, u[0]);
-        tile = acdf_cut_sample_tile(local, point, part, &mix, u, range, &probability);
-        probability = acdf_cut_tile_probability(part, &mix, probability);
-    }
-    return acdf_local_sample_inside(local, tile, probability, u, range);
-}
-
-/* The probability of a tile that is `inside` of the part's mixture; 0 where no sample can fall. */
-ACDF_FN double acdf_cut_found_probability(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part,
-                                          const AcdfMixture* mix, uint32_t tile, double inside) {
-    uint32_t light = part->first_light;
-    if (!(part->probability > 0.0)) return 0.0;
-    if (inside > 0.0) return acdf_cut_tile_probability(part, mix, inside);
-    /* No row gives a bright tile any probability. */
-    while (light < part->end_light && local->bright_tiles[light].tile < tile) ++light;
-    if (light == part->end_light || local->bright_tiles[light].tile != tile || !(cut->light[light] > 0.0))
-        return 0.0;
-    return acdf_positive(part->probability * (cut->light[light] / part->sum));
+    return acdf_cut_sample_guessed(cut, acdf_cut_guess(cut, u, 0), u);
 }
 
 /* The part that holds a grid square. */
@@ -283,77 +151,32 @@ ACDF_FN const AcdfCutPart* acdf_cut_find(const AcdfCut* cut, const uint32_t* squ
     int child = cut->count > 1 ? 0 : ~0;
     while (child >= 0) {
         const AcdfCutSplit* split = &cut->split[child];
-        child = split->child[square[split->place & 7u] >= split->place >> 3];
+        child = split->child[square[split->place & 1u] >= split->place >> 1];
     }
     return &cut->part[~child];
 }
 
-/* What of the mixture a part has, out of 2^52, where rows of halvings serve a point. In it all tiles are as
- * visible.
- */
-ACDF_INLINE double acdf_cut_row_mass(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part) {
-    if (point->cells == 0) return part->sum * 0x1p52;
-    return acdf_rows_mass(&point->by.rows, part->tile, acdf_cut_end(local->rows_of_normals, part));
-}
-
-/* acdf_cut_pdf where rows of halvings serve a point. */
-ACDF_FN float acdf_cut_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
-                               const AcdfGrid* grid, const uint32_t square[2]) {
-    const AcdfNormalRows* rows = local->rows_of_normals;
-    const AcdfCutPart* part = acdf_cut_find(cut, square);
-    AcdfRowCell cell;
-    double mass;
-    uint32_t tile;
-    if (!(part->probability > 0.0)) return 0.0f;
-    mass = acdf_cut_row_mass(local, point, part);
-    tile = acdf_rows_find_below(rows, acdf_cut_node(part), square);
-    cell = acdf_rows_find_cell(local->environment.halved, grid, acdf_row_tile(rows, tile), square);
-    return acdf_float_pdf(part->probability * (acdf_rows_mass(&point->by.rows, tile, tile + 1u) / mass) *
-                          cell.share * cell.scale);
-}
-
-/* acdf_cut_sample where rows of halvings serve a point: from a part, u in [0, 1]. */
-ACDF_FN AcdfDirectionSample acdf_cut_row_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                const AcdfCutPart* part, const AcdfGrid* grid, double u[2]) {
-    const AcdfNormalRows* rows = local->rows_of_normals;
-    const AcdfRowMixture* mix = &point->by.rows;
-    const double all = acdf_cut_row_mass(local, point, part);
-    double below = acdf_rows_sum(mix, mix->before, part->tile), mass = all;
-    const uint32_t tile =
-        acdf_rows_search(mix, mix->before, part->tile, acdf_cut_end(rows, part), &below, &mass, &u[1]);
-    return acdf_rows_direction(local->environment.halved, grid, acdf_row_tile(rows, tile),
-                               part->probability * (mass / all), u);
+/* What of the mixture a part has, out of 2^52. In it all tiles are as visible. */
+ACDF_INLINE double acdf_cut_mass(const AcdfLocalPoint* point, const AcdfCutPart* part) {
+    return point->cells == 0 ? part->sum * 0x1p52 : acdf_rows_mass(&point->by.rows, part->first, part->end);
 }
 
 /* Pdf per steradian with which acdf_cut_sample samples `direction` (unit); of cuts that are finished. */
 ACDF_CALLED float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    AcdfRowSpot spot;
+    AcdfRowCell cell;
     const AcdfCutPart* part;
-    AcdfMixture mix;
-    AcdfRange range[2];
-    double p;
-    uint32_t square[2], tile;
-    if (cut->count == 0 || !acdf_local_square(&grid, direction, square)) return 0.0f;
-    if (local->rows_of_normals) return acdf_cut_row_pdf(local, point, cut, &grid, square);
-    part = acdf_cut_find(cut, square);
+    double inside;
+    if (cut->count == 0) return 0.0f;
+    spot = acdf_rows_spot(local->rows_of_normals, &grid, direction);
+    if (!acdf_rows_locate(local->rows_of_normals, local->environment.halved, &grid, &spot, direction, &cell))
+        return 0.0f;
+    part = acdf_cut_find(cut, spot.square);
     if (!(part->probability > 0.0)) return 0.0f;
-    mix = acdf_cut_mixture(point, part);
-    acdf_cut_range(part, range);
-    tile = acdf_cut_find_tile(local, point, part, &mix, square, range, &p);
-    p = acdf_cut_found_probability(local, cut, part, &mix, tile, p);
-    p = acdf_local_find_inside(local, tile, p, square, range);
-    return p > 0.0 ? acdf_local_cell_pdf(local, &grid, direction, range, p) : 0.0f;
-}
-
-/* The direction that what is left of the random numbers picks in a cell of probability p. */
-ACDF_INLINE AcdfDirectionSample acdf_cut_direction_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                          const AcdfCut* cut, const AcdfGrid* grid,
-                                                          const AcdfRange range[2], const double u[2], double p) {
-    AcdfDirectionSample out = acdf_local_direction_sample(local, point, grid, range, u, p);
-    /* A slope makes the pdf depend on where the rounded direction lies. */
-    if (range[0].tilt != 0.0 || range[1].tilt != 0.0) out.pdf = acdf_cut_pdf(local, point, cut, out.direction);
-    return out;
+    inside = acdf_rows_mass(&point->by.rows, spot.tile, spot.tile + 1u) / acdf_cut_mass(point, part);
+    return acdf_float_pdf(part->probability * inside * cell.share * cell.scale);
 }
 
 /* Samples a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0
@@ -361,18 +184,20 @@ ACDF_INLINE AcdfDirectionSample acdf_cut_direction_sample(const AcdfLocal* local
 ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                 const AcdfCut* cut, double u0, double u1) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    const AcdfRowMixture* mix = &point->by.rows;
     AcdfDirectionSample out = {{0.0f, 0.0f, 0.0f}, 0.0f};
     const AcdfCutPart* part;
-    AcdfRange range[2];
-    double u[2], p;
+    double u[2], all, below, mass;
+    uint32_t tile;
     if (cut->count == 0) return out;
     u[0] = acdf_cut_number(u0);
     u[1] = acdf_cut_number(u1);
     part = acdf_cut_choose_part(cut, u);
-    if (local->rows_of_normals) return acdf_cut_row_sample(local, point, part, &grid, u);
-    acdf_cut_range(part, range);
-    p = acdf_cut_sample_part(local, point, cut, part, u, range);
-    return acdf_cut_direction_sample(local, point, cut, &grid, range, u, p);
+    all = mass = acdf_cut_mass(point, part);
+    below = acdf_rows_sum(mix, mix->before, part->first);
+    tile = acdf_rows_search(mix, mix->before, part->first, part->end, &below, &mass, &u[1]);
+    return acdf_rows_direction(local->environment.halved, &grid, acdf_row_tile(local->rows_of_normals, tile),
+                               part->probability * (mass / all), u);
 }
 
 #ifdef __cplusplus

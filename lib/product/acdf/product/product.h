@@ -38,10 +38,10 @@ struct ProductPoint {
     double share; ///< of the samples that the BRDF's own sampler samples; below 0: nothing is sampled
 };
 
-/// Made of the light, of a local environment file or of an environment file, and a lobe. Samples from bright tiles
-/// that shared tiles describe follow the product; all others mix those of the light's own pdf and of the BRDF's
-/// half and half. Holds views: valid while their files live. All functions are const, thread-safe, allocate and
-/// throw nothing.
+/// Made of the light, of a local environment file or of an environment file, and a lobe. Samples at
+/// points that rows of codes serve follow the product; all others mix those of the light's own pdf and of the
+/// BRDF's half and half. Holds views: valid while their files live. All functions are const, thread-safe, allocate
+/// and throw nothing.
 template <class AnyLobe>
 class ProductSampler {
 public:
@@ -83,11 +83,6 @@ private:
         return lobe_.pdf(point.lobe, wi);
     }
     ACDF_METHOD static float mixed(const Point& point, float light, float lobe) noexcept;
-    /// Whether a cut through a tree is sampled from.
-    ACDF_METHOD static bool samples_cut(const Point& point) noexcept {
-        return point.light.what == ACDF_LOCAL_BLEND || (point.light.what == ACDF_LOCAL_ROWS && point.cut.count > 0);
-    }
-
     AcdfLocal light_;
     bool local_; ///< or an environment alone
     AnyLobe lobe_;
@@ -115,16 +110,14 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
     }
     point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
     const PointOfLobe<AnyLobe> of_lobe = {light_, point.light, point.frame, lobe_, point.lobe, parts_};
-    if (point.light.what == ACDF_LOCAL_BLEND ||
-        (point.light.what == ACDF_LOCAL_ROWS && acdf_cut_serves_rows(&light_)))
-        point.share = CutRating<AnyLobe>(of_lobe, point.cut).make();
+    if (point.light.what == ACDF_LOCAL_ROWS) point.share = CutRating<AnyLobe>(of_lobe, point.cut).make();
     return point;
 }
 
 template <class AnyLobe>
 ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const float direction[3]) const noexcept {
     if (!(point.share >= 0.0 && point.share < 1.0)) return 0.0f;
-    if (samples_cut(point)) return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
+    if (point.light.what == ACDF_LOCAL_ROWS) return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
     return acdf_local_pdf_at(&light_, &point.light, direction);
 }
 
@@ -156,7 +149,7 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
         return out;
     }
     const double rest = (u - point.share) / (1.0 - point.share);
-    if (samples_cut(point)) {
+    if (point.light.what == ACDF_LOCAL_ROWS) {
         out = acdf_cut_sample(&light_, &point.light, &point.cut, rest, u1);
     } else {
         out = acdf_local_sample_at(&light_, &point.light, rest, u1);

@@ -1,4 +1,4 @@
-// Shading points of product sampling whose light is a local environment file of shared tiles
+// Shading points of product sampling whose light is a local environment file of rows of codes
 // (acdf/product/product.h): into which parts its tree is divided, and which share of the samples they get. C++17,
 // header only, freestanding.
 #pragma once
@@ -70,12 +70,12 @@ ACDF_METHOD auto CutRating<AnyLobe>::halve(int part) noexcept -> Division {
     const AcdfCutSplit& split = cut_.split[last - 1];
     PartRating &low = ratings_[part], &high = ratings_[last];
     high = low;
-    high.guides = guides_.above(split.place & 7u, split.place >> 3, low.guides);
+    high.guides = guides_.above(split.place & 1u, split.place >> 1, low.guides);
     low.guides ^= high.guides;
     low.solid_angle = static_cast<float>(acdf_cut_solid_angle(&of_.light, &cut_.part[part]));
     const float rest = high.solid_angle - low.solid_angle;
     high.solid_angle = rest > 0.0f ? rest : 0.0f;
-    return {part, last, low.tile >= cut_.part[last].tile ? 0 : 1, low.mean, low.around};
+    return {part, last, low.tile >= cut_.part[last].first ? 0 : 1, low.mean, low.around};
 }
 
 /// Divides where light times BRDF is large, and the part is.
@@ -111,7 +111,7 @@ ACDF_METHOD void CutRating<AnyLobe>::divide() noexcept {
                 PartRating& rating = ratings_[part];
                 rating.spread = change * change;
                 rating.around = hoped;
-                if (cut_.part[part].node & ACDF_TILE_FLAG) continue;
+                if (cut_.part[part].node & ACDF_TOP_TILE) continue;
                 const double light = cut_.part[part].sum * double{rating.mean + 0.3f * hoped};
                 const double square = light * light * double{rating.solid_angle};
                 if (square > 0.0) queue.push(part, square);
@@ -130,7 +130,6 @@ ACDF_METHOD double CutRating<AnyLobe>::make() noexcept {
     double share = 0.5;
     acdf_cut_begin(&of_.light, &of_.at, &cut_);
     if (of_.parts > 1) {
-        acdf_cut_ahead(&of_.light, &of_.at, &cut_, of_.parts);
         sample_guides();
         divide();
         share = weigh_cut(cut_, guides_, ratings_);

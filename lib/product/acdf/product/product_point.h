@@ -52,12 +52,12 @@ struct PointOfLobe {
         for (int i = 0; i < sampled; ++i) {
             const ProductSample s = guide(lobe, lobe_at, i, sampled);
             if (!(s.pdf > 0.0f && s.direction[2] > 0.0f)) continue;
-            std::uint32_t square[2];
             frame.to_world(s.direction, world[out.count]);
-            if (!acdf_local_square(&grid, world[out.count], square)) continue;
+            const AcdfRowSpot spot = acdf_rows_spot(light.rows_of_normals, &grid, world[out.count]);
+            if (!spot.valid) continue;
             const float value = bounded(lobe.value(lobe_at, s.direction, s.pdf)), pdf = bounded(s.pdf);
             if (!(value > 0.0f && pdf > 0.0f)) continue;
-            for (int axis = 0; axis < 2; ++axis) out.square[axis][out.count] = square[axis];
+            for (int axis = 0; axis < 2; ++axis) out.square[axis][out.count] = spot.square[axis];
             out.value[out.count] = value;
             out.pdf[out.count] = pdf;
             if (value > out.brightest) out.brightest = value;

@@ -15,48 +15,28 @@ extern "C" {
 /* Made once for a shading point, it serves all samples there. Up to three rows are mixed. */
 ACDF_STRUCT_BEGIN(AcdfShaderPoint)
 ACDF_FIELD(AcdfWalkMixture, mix)
-ACDF_FIELD(ACDF_U32, bright_tiles) /* how many */
-ACDF_FIELD(ACDF_F32, light_sum)    /* of their weights */
-ACDF_FIELD(ACDF_F32, sum)          /* of all weights */
-ACDF_FIELD(ACDF_F32, cosine)       /* share of the cosine lobe */
-ACDF_FIELD(ACDF_F32, x)            /* the unit normal */
+ACDF_FIELD(ACDF_F32, sum)    /* of all weights */
+ACDF_FIELD(ACDF_F32, cosine) /* share of the cosine lobe */
+ACDF_FIELD(ACDF_F32, x)      /* the unit normal */
 ACDF_FIELD(ACDF_F32, y)
 ACDF_FIELD(ACDF_F32, z)
-ACDF_FIELD(ACDF_F32, scale) /* of it to that of the weights */
 ACDF_STRUCT_END(AcdfShaderPoint)
 
 /* What samples from the whole tree at a link. */
 ACDF_FN1(AcdfShaderPoint, acdf_point_of_tree, ACDF_U32, root) {
     ACDF_VAR(AcdfShaderPoint, here);
     here.mix = acdf_mixture_below(root, 1.0f);
-    here.bright_tiles = 0u;
-    here.light_sum = 0.0f;
     here.sum = 1.0f;
     here.cosine = 0.0f;
     here.x = 0.0f;
     here.y = 0.0f;
     here.z = 1.0f;
-    here.scale = 1.0f;
     return here;
 }
 
 /* What serves all normals. */
 ACDF_FN1(AcdfShaderPoint, acdf_point_anywhere, ACDF_TABLES, tables) {
     return acdf_point_of_tree(ACDF_WORD(tables, ACDF_WALK_ENVIRONMENT));
-}
-
-/* Weight of bright tile k: acdf_cap_weight of acdf/local_point.h. */
-ACDF_FN3(ACDF_F32, acdf_point_bright_tile, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_U32, k) {
-    ACDF_LET(ACDF_U32, light) = ACDF_WORD(tables, ACDF_WALK_BRIGHT_TILES) + 8u * k;
-    ACDF_LET(ACDF_F32, height) =
-        here.scale * (here.x * acdf_word_as_float(tables, light) + here.y * acdf_word_as_float(tables, light + 1u) +
-                      here.z * acdf_word_as_float(tables, light + 2u));
-    ACDF_LET(ACDF_F32, radius) = here.scale * acdf_word_as_float(tables, light + 3u);
-    ACDF_LET(ACDF_F32, share) = acdf_word_as_float(tables, light + 4u);
-    if (ACDF_ABS(height) < radius) {
-        return share * ((height + radius) * (height + radius) / (4.0f * radius));
-    }
-    return share * ACDF_MAX(height, 0.0f);
 }
 
 /* The number of the corner |x|, |y|, |z| of an octahedron whose edges are divided by n, as acdf_octahedral_corner
@@ -171,19 +151,11 @@ ACDF_FN2(AcdfShaderPoint, acdf_point_of_bins, ACDF_TABLES, tables, AcdfShaderBin
     return acdf_point_of_tree(ACDF_SELECT(acdf_word_as_float(tables, at + 1u) > 0.0f, root, ACDF_WALK_NONE));
 }
 
-/* Where bins share tiles: a mixture of their rows, and the bright tiles. */
-ACDF_FN5(AcdfShaderPoint, acdf_point_of_rows, ACDF_TABLES, tables, AcdfShaderBins, bins, ACDF_F32, x, ACDF_F32, y,
-         ACDF_F32, z) {
-    ACDF_LET(ACDF_U32, n) = ACDF_WORD(tables, ACDF_WALK_SUBDIVISIONS);
+/* Where bins have rows: a mixture of them. */
+ACDF_FN2(AcdfShaderPoint, acdf_point_of_rows, ACDF_TABLES, tables, AcdfShaderBins, bins) {
     ACDF_LET(ACDF_U32, root) = ACDF_WORD(tables, ACDF_WALK_MIXTURE);
     ACDF_VAR(AcdfShaderPoint, here) = acdf_point_of_tree(root);
     here.mix.weight0 = 0.0f;
-    here.x = x;
-    here.y = y;
-    here.z = z;
-    if (n > 0u) {
-        here.scale = ACDF_TO_F32(n) / (ACDF_ABS(x) + ACDF_ABS(y) + ACDF_ABS(z));
-    }
     here = acdf_point_with(tables, here, bins.bin0, bins.weight0);
     if (bins.weight1 > 0.0f) {
         here = acdf_point_with(tables, here, bins.bin1, bins.weight1);
@@ -194,12 +166,7 @@ ACDF_FN5(AcdfShaderPoint, acdf_point_of_rows, ACDF_TABLES, tables, AcdfShaderBin
     if (here.mix.root != root) { /* one of them is not stored */
         return acdf_point_of_tree(here.mix.root);
     }
-    here.bright_tiles = ACDF_WORD(tables, ACDF_WALK_BRIGHT_TILE_COUNT);
-    ACDF_VAR(ACDF_U32, k) = 0u;
-    for (k = 0u; k < here.bright_tiles; k = k + 1u) {
-        here.light_sum = here.light_sum + acdf_point_bright_tile(tables, here, k);
-    }
-    here.sum = here.light_sum + acdf_mixture_weight(here.mix);
+    here.sum = acdf_mixture_weight(here.mix);
     if (!(here.sum > 0.0f)) {
         here.mix.root = ACDF_WALK_NONE;
     }
@@ -233,7 +200,7 @@ ACDF_FN4(AcdfShaderPoint, acdf_point_at, ACDF_TABLES, tables, ACDF_F32, nx, ACDF
     if (ACDF_WORD(tables, ACDF_WALK_MIXTURE) == ACDF_WALK_NONE) {
         here = acdf_point_of_bins(tables, bins);
     } else {
-        here = acdf_point_of_rows(tables, bins, x, y, z);
+        here = acdf_point_of_rows(tables, bins);
     }
     here.cosine = acdf_word_as_float(tables, ACDF_WALK_COSINE);
     here.x = x;

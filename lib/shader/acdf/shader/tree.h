@@ -9,7 +9,7 @@
 #ifndef ACDF_SHADER_TREE_H
 #define ACDF_SHADER_TREE_H
 
-#include <acdf/octahedral_float.h>
+#include <acdf/shader/octahedral_float.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -34,9 +34,6 @@ extern "C" {
  */
 #define ACDF_WALK_SHARES 12u
 #define ACDF_WALK_STRIDE 13u
-#define ACDF_WALK_BRIGHT_TILES                                                                                     \
-    14u /* 8 words each: direction (3), radius, share (f32), link, and two of no meaning */
-#define ACDF_WALK_BRIGHT_TILE_COUNT 15u
 #define ACDF_WALK_COSINE 16u     /* f32: share of a cosine lobe about the normal */
 #define ACDF_WALK_VIEWS 17u      /* of BRDFs, 4 words each (acdf/shader/brdf.h) */
 #define ACDF_WALK_VIEW_COUNT 18u /* elevations */

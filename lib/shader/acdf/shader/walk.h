@@ -3,8 +3,8 @@
  * for every number and every direction. `acdf export` writes this text in the languages of shaders (lib/shader);
  * here it is C.
  *
- * Trees (acdf/shader/tree.h) end in leaves: parts of cells that lie in one piece of the sphere (acdf/pieces.h), or
- * cells of the octahedral square.
+ * Trees (acdf/shader/tree.h) end in leaves: parts of cells that lie in one piece of the sphere
+ * (acdf/shader/pieces.h), or cells of the octahedral square.
  *
  * Pdfs are the reader's but for the rounding of floats, below 1e-5 of them. A sample is moved 2^-20 radians
  * (or 2^-20 of the square's side) inwards; the pdf of a direction so close to a border may be the neighbour's.
@@ -20,9 +20,9 @@ extern "C" {
 
 /* ---- leaves ----------------------------------------------------------------------------------------- */
 
-/* The first word of a leaf: quarter, south (bit 2), and the number of the tile's light and 1 (from bit 3). Next is
- * the pdf in its tile or tree, sr^-1; then of each axis low, width, the least and the greatest that is sampled.
- * Axes are local azimuth (radians) and 1 - |z|, in the south from the pole up, or those of the square. */
+/* The first word of a leaf: quarter, south (bit 2). Next is the pdf in its tile or tree, sr^-1; then of each axis
+ * low, width, the least and the greatest that is sampled. Axes are local azimuth (radians) and 1 - |z|, in the
+ * south from the pole up, or those of the square. */
 
 /* Keys of a direction: upper parts of splits begin at theirs. */
 #define ACDF_WALK_SEAM 20971520u /* key0 of acdf_direction_keys at phi = pi, where columns begin */
@@ -30,14 +30,9 @@ extern "C" {
 
 /* ---- pdfs ------------------------------------------------------------------------------------------- */
 
-/* The pdf of what follows the light, sr^-1, where a traversal ended: in a bright tile that of its light. */
-ACDF_FN3(ACDF_F32, acdf_walk_bright_tile_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkEnd, end) {
-    ACDF_LET(ACDF_U32, light) = ACDF_WORD(tables, end.leaf) >> 3u;
-    ACDF_VAR(ACDF_F32, given) = end.given;
-    if (given == 0.0f && light != 0u && here.bright_tiles != 0u) {
-        given = acdf_point_bright_tile(tables, here, light - 1u);
-    }
-    ACDF_LET(ACDF_F32, pdf) = given / here.sum * acdf_word_as_float(tables, end.leaf + 1u);
+/* The pdf of what follows the light, sr^-1, where a traversal ended. */
+ACDF_FN3(ACDF_F32, acdf_walk_light_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkEnd, end) {
+    ACDF_LET(ACDF_F32, pdf) = end.given / here.sum * acdf_word_as_float(tables, end.leaf + 1u);
     return ACDF_MIN(pdf, 3.402823466e38f);
 }
 
@@ -74,8 +69,7 @@ ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AC
     }
     ACDF_LET(AcdfDirectionKeys, place) = acdf_walk_keys(tables, d);
     return acdf_walk_combined_pdf(
-        here, acdf_walk_bright_tile_pdf(tables, here, acdf_walk_find(tables, here.mix, place.key0, place.key1)), x,
-        y, z);
+        here, acdf_walk_light_pdf(tables, here, acdf_walk_find(tables, here.mix, place.key0, place.key1)), x, y, z);
 }
 
 /* ---- samples ------------------------------------------------------------------------------------------ */
@@ -120,57 +114,6 @@ ACDF_FN3(AcdfVector, acdf_walk_cosine, AcdfShaderPoint, here, ACDF_F32, u0, ACDF
     return acdf_walk_about(acdf_vector(here.x, here.y, here.z), r * turned.x, r * turned.y, h);
 }
 
-/* Samples a bright tile: its link becomes the end's leaf. */
-ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_bright_tile, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers,
-         numbers) {
-    ACDF_VAR(AcdfWalkEnd, end);
-    ACDF_VAR(ACDF_F32, rest) = here.light_sum;
-    ACDF_VAR(ACDF_U32, light) = 0u;
-    ACDF_VAR(ACDF_U32, k) = 0u;
-    ACDF_VAR(ACDF_U32, found) = 0u;
-    end.numbers = numbers;
-    for (k = 0u; k < here.bright_tiles && found == 0u; k = k + 1u) {
-        ACDF_LET(ACDF_F32, weight) = acdf_point_bright_tile(tables, here, k);
-        if (weight > 0.0f) {
-            rest = ACDF_MAX(rest - weight, 0.0f);
-            light = k;
-            ACDF_LET(ACDF_U32, border) = acdf_walk_border(weight, rest, end.numbers.width0);
-            if (end.numbers.at0 < border) {
-                end.numbers.width0 = border;
-                found = 1u;
-            } else {
-                end.numbers.at0 = end.numbers.at0 - border;
-                end.numbers.width0 = end.numbers.width0 - border;
-            }
-        }
-    }
-    end.leaf = ACDF_WORD(tables, ACDF_WORD(tables, ACDF_WALK_BRIGHT_TILES) + 8u * light + 5u);
-    end.given = 0.0f; /* by the mixture */
-    return end;
-}
-
-/* Samples by bright tiles and rows: where a traversal ends. */
-ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_row, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
-    ACDF_VAR(AcdfWalkNumbers, left) = numbers;
-    ACDF_VAR(AcdfWalkMixture, mix) = here.mix;
-    ACDF_LET(ACDF_U32, lit) = acdf_walk_border(here.light_sum, here.sum - here.light_sum, left.width0);
-    ACDF_LET(ACDF_U32, is_light) = ACDF_SELECT(left.at0 < lit, 1u, 0u);
-    if (is_light != 0u) {
-        left.width0 = lit;
-        ACDF_LET(AcdfWalkEnd, light) = acdf_walk_sample_bright_tile(tables, here, left);
-        left = light.numbers;
-        mix = acdf_mixture_below(light.leaf, 1.0f);
-    } else {
-        left.at0 = left.at0 - lit;
-        left.width0 = left.width0 - lit;
-    }
-    ACDF_VAR(AcdfWalkEnd, end) = acdf_walk_sample_leaf(tables, mix, left);
-    if (is_light != 0u) {
-        end.given = 0.0f; /* by the mixture */
-    }
-    return end;
-}
-
 /* Samples a direction at a point for two random words: n0 / 2^32 (azimuth) and n1 / 2^32 (elevation) are the random
  * numbers of acdf_local_sample_at and acdf_environment_sample. The pdf is 0 where nothing serves the point. */
 ACDF_FN4(AcdfWalkSample, acdf_walk_sample, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_U32, n0, ACDF_U32, n1) {
@@ -187,9 +130,9 @@ ACDF_FN4(AcdfWalkSample, acdf_walk_sample, ACDF_TABLES, tables, AcdfShaderPoint,
     } else {
         numbers.at0 = numbers.at0 - cosine;
         numbers.width0 = numbers.width0 - cosine;
-        ACDF_LET(AcdfWalkEnd, end) = acdf_walk_sample_row(tables, here, numbers);
+        ACDF_LET(AcdfWalkEnd, end) = acdf_walk_sample_leaf(tables, here.mix, numbers);
         d = acdf_walk_direction(tables, end);
-        light = acdf_walk_bright_tile_pdf(tables, here, end);
+        light = acdf_walk_light_pdf(tables, here, end);
     }
     if (light < 0.0f) {
         return acdf_walk_sampled(d, acdf_walk_pdf(tables, here, d.x, d.y, d.z));

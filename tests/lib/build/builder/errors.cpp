@@ -229,7 +229,6 @@ TEST(BuilderErrors, EnvironmentsCanBeCancelled) {
 TEST(BuilderErrors, OtherKindsCanBeCancelled) {
     const std::vector<float> rgb = sky();
     LocalOptions local_options;
-    local_options.shape = LocalShape::small;
     local_options.goal = Goal::of_budget(16 << 10);
     local_options.subdivisions = 2;
     expect_cancellable(taking_bytes<Local>(

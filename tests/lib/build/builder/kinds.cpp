@@ -118,7 +118,6 @@ TEST(BuilderLocal, Misuse) {
     refused("tiles without sharing", [](LocalOptions& o) { o.tiles = 4, o.sharing = false; });
     refused("a small weight", [](LocalOptions& o) { o.max_weight = 0.5; });
     refused("a bound without sharing", [](LocalOptions& o) { o.max_weight = 9.0, o.sharing = false; });
-    refused("a wild shape", [](LocalOptions& o) { o.shape = static_cast<LocalShape>(9); });
     refused("a share", [](LocalOptions& o) { o.cosine_share = 1.0; });
     refused("a NaN share", [](LocalOptions& o) { o.cosine_share = kNan; });
     refused("a variance without sharing",

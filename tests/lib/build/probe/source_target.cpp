@@ -4,7 +4,7 @@
 #include "build/accuracy/environment.h"
 #include "build/probe/cube.h"
 #include "build/probe/source_lookup.h"
-#include "compress/fit/fit.h"
+#include "compress/halvings/fit.h"
 #include "compress/store/store.h"
 #include "compress/threads.h"
 #include "tests/inputs/directions.h"
@@ -164,12 +164,12 @@ class EveryLayout : public ::testing::TestWithParam<Named> {};
 void check(const Map& map, AcdfParameterization grid, AcdfFilter filter) {
     const std::vector<float> rgb = picture(map);
     const build::SourceTarget& made = target_of(map, grid, filter);
-    compress::FitOptions fit;
+    compress::HalvingsOptions fit;
     fit.goal.cells = 500;
     compress::Description description =
         compress::environment_description(made.target.columns, made.target.rows, made.target.parameterization);
     description.total = made.target.total;
-    const auto bytes = compress::store(compress::fit(made.target, fit).tree, description);
+    const auto bytes = compress::store(compress::fit_halvings(made.target, fit), description);
     File file;
     const Status status = File::from_memory(bytes.data(), bytes.size(), file);
     ASSERT_TRUE(status.ok()) << status.message;

@@ -24,7 +24,6 @@ FitOptions options_of(AcdfFit fit, Order order) {
     options.order = order;
     options.column_segments = 9;
     options.row_segments = 5;
-    options.goal.cells = 45;
     return options;
 }
 
@@ -51,24 +50,6 @@ TEST(Fit, OrderPhiIsOrderZOfTheTransposedTarget) {
         expect_same(a, b);
         EXPECT_EQ(a.curves[0].axis, ACDF_AXIS_PHI + 0u);
         EXPECT_EQ(fit(t, z).cascade.curves[0].axis, ACDF_AXIS_THETA + 0u);
-    }
-}
-
-TEST(Fit, TreesStartWithTheAxisOfTheirOrder) {
-    const Target t = acdf_test::noise_target(31, 23, 1, 1.0, 0.1);
-    const FitOptions phi = options_of(ACDF_FIT_VARIANCE, Order::phi);
-    const FitOptions z = options_of(ACDF_FIT_VARIANCE, Order::z);
-    EXPECT_EQ(fit(t, phi).cascade.curves[0].axis, ACDF_AXIS_PHI + 0u);
-    EXPECT_EQ(fit(t, z).cascade.curves[0].axis, ACDF_AXIS_THETA + 0u);
-    // The same tree but for the order in which sums are taken.
-    const Cascade a = fit(t, phi).cascade, b = fit(transposed(t), z).cascade;
-    ASSERT_EQ(a.curves.size(), b.curves.size());
-    for (std::size_t i = 0; i < a.curves.size(); ++i) {
-        EXPECT_EQ(a.curves[i].axis, b.curves[i].axis);
-        EXPECT_EQ(a.curves[i].knots, b.curves[i].knots);
-        EXPECT_EQ(a.curves[i].children, b.curves[i].children);
-        for (std::size_t s = 0; s < a.curves[i].segments(); ++s)
-            EXPECT_NEAR(a.curves[i].probability[s], b.curves[i].probability[s], 1e-12);
     }
 }
 
@@ -119,7 +100,6 @@ TEST(Fit, KeepsItsBudgets) {
                 SCOPED_TRACE(name + " " + std::to_string(kind));
                 const Cascade cascade = fit(t, options_of(kind, order)).cascade;
                 EXPECT_LE(acdf_test::cells_of(cascade, t).size(), 45u);
-                if (kind == ACDF_FIT_VARIANCE) continue;
                 for (const Curve& curve : cascade.curves)
                     EXPECT_LE(curve.segments(), curve.axis == ACDF_AXIS_PHI ? 9u : 5u);
             }
@@ -140,12 +120,11 @@ TEST(Fit, GradientKnotsComeOnTopOfTheBudget) {
 
 TEST(Fit, ConstantTargetIsOneCell) { // the furnace
     const Target t = acdf_test::sphere_target(50, 25, [](double, double) { return 0.25; });
-    for (const AcdfFit kind : {ACDF_FIT_CDF, ACDF_FIT_PDF, ACDF_FIT_VARIANCE})
+    for (const AcdfFit kind : {ACDF_FIT_CDF, ACDF_FIT_PDF})
         for (const Order order : {Order::phi, Order::z}) {
             SCOPED_TRACE(kind);
             FitOptions options = options_of(kind, order);
             options.epsilon = 1e-9; // rounding is no reason for a knot
-            if (kind == ACDF_FIT_VARIANCE) options.goal.cells = 1;
             const Cascade cascade = fit(t, options).cascade;
             EXPECT_EQ(acdf_test::cells_of(cascade, t).size(), 1u);
             const auto bytes = store(encode_tree(cascade), environment_description(50, 25));

@@ -17,16 +17,10 @@ namespace {
 
 using namespace acdf::compress;
 
-LocalFileOptions sized(std::uint32_t tiles, std::uint64_t bytes) {
-    LocalFileOptions options;
-    options.size = {tiles, bytes};
-    return options;
-}
-
 TEST(LocalFit, TheSameBytesForAnyNumberOfThreads) {
     const Target target = suns_target(128, 64);
     for (const bool sharing : {true, false}) {
-        LocalFileOptions options = sized(120, 3000);
+        LocalFileOptions options = of_size(120, 3000);
         options.sharing = sharing;
         std::vector<std::uint8_t> first;
         for (const std::size_t threads : {1u, 2u, 7u}) {
@@ -39,7 +33,7 @@ TEST(LocalFit, TheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(LocalFit, CompressedFilesSampleTheSame) {
-    LocalFileOptions options = sized(100, 3000);
+    LocalFileOptions options = of_size(100, 3000);
     const LocalMap plain(suns_target(128, 64), octahedral_bins(4), options);
     options.codec = ACDF_CODEC_ZLIB;
     const LocalMap packed(suns_target(128, 64), octahedral_bins(4), options);
@@ -66,7 +60,7 @@ protected:
                                      [=](std::uint32_t c, std::uint32_t r) {
                                          return c == lamp.column && r == lamp.row ? 5.0 : 0.0;
                                      }),
-                        octahedral_bins(6), sized(40, 500));
+                        octahedral_bins(6), of_size(40, 500));
     }
     /// A direction in the lamp's texel, at fractions of it.
     Normal in_lamp(double s, double t) const {
@@ -130,38 +124,6 @@ INSTANTIATE_TEST_SUITE_P(All, OneLamp,
                                     "_" + std::to_string(info.param.row);
                          });
 
-/// The cosine to the farthest and to the nearest place of a box, by trying many.
-TEST(Tiles, LargestCosineIsThatOfNoPositionLess) {
-    const Target target = sphere_target(24, 12, smooth_sky);
-    std::mt19937_64 random(4);
-    for (int i = 0; i < 2000; ++i) {
-        Box box;
-        box.end.fill(1);
-        const auto place = [&](std::uint32_t size, std::size_t axis) {
-            box.begin[axis] = static_cast<std::uint32_t>(random() % size);
-            box.end[axis] = box.begin[axis] + 1 + static_cast<std::uint32_t>(random() % (size - box.begin[axis]));
-        };
-        place(12, 0);
-        place(24, 1);
-        const Normal n = random_direction(random);
-        const Direction m = centre(target, box);
-        const double told = largest_cosine(target, box, {double{n[0]}, double{n[1]}, double{n[2]}});
-        const double reach = radius(target, box);
-        double most = -1.0;
-        for (int y = 0; y <= 20; ++y)
-            for (int x = 0; x <= 20; ++x) {
-                const double theta = kPi * (box.begin[0] + y / 20.0 * box.length(0)) / 12.0;
-                const double phi = kPi - 2.0 * kPi * (box.begin[1] + x / 20.0 * box.length(1)) / 24.0;
-                const Direction d = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                                     std::cos(theta)};
-                most = std::max(most, n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
-                ASSERT_LE(std::hypot(d[0] - m[0], d[1] - m[1], d[2] - m[2]), reach + 1e-9);
-            }
-        ASSERT_GE(told, most - 1e-7);
-        ASSERT_LE(told, most + 0.1); // it is that of some direction in the box
-    }
-}
-
 std::vector<SceneNormal> upper_half(int count) {
     std::mt19937_64 random(5);
     std::vector<SceneNormal> scene;
@@ -177,8 +139,8 @@ TEST(LocalScene, BinsThatServeNoNormalAreNotStored) {
     NormalBins bins = octahedral_bins(6);
     const std::vector<SceneNormal> scene = upper_half(500);
     weigh(bins, scene);
-    const LocalMap some(target, bins, sized(100, 3000)), all(target, octahedral_bins(6), sized(100, 3000));
-    EXPECT_EQ(some.file.blend().tiles->row_count, bins.stored());
+    const LocalMap some(target, bins, of_size(100, 3000)), all(target, octahedral_bins(6), of_size(100, 3000));
+    EXPECT_EQ(some.view().data().rows_of_normals->rows, bins.stored());
     EXPECT_LT(some.bytes.size(), all.bytes.size() - 3000);
     for (const SceneNormal& n : scene) EXPECT_TRUE(some.view().stored(n.normal.data()));
     const float down[3] = {0.1f, 0.2f, -1.0f};
@@ -191,51 +153,18 @@ TEST(LocalScene, BinsThatServeNoNormalAreNotStored) {
     }
 }
 
-TEST(LocalFit, RefusesWhatIsDarkAndGridsThatShare) {
+TEST(LocalFit, RefusesWhatIsDark) {
     const Target dark = sphere_target(16, 8, [](double, double) { return 0.0; });
-    EXPECT_THROW(fit_local(dark, octahedral_bins(2), {}), std::invalid_argument);
-    EXPECT_THROW(fit_local(suns_target(16, 8), latlong_bins(5, 3), {}), std::invalid_argument);
+    EXPECT_THROW(LocalHalvingsFitter(dark, octahedral_bins(2), {}), std::invalid_argument);
+    EXPECT_THROW(fit_local_separate(dark, octahedral_bins(2), BinTarget::mean, {}), std::invalid_argument);
     NormalBins none = octahedral_bins(2);
     EXPECT_THROW(weigh(none, {{{0.0f, 0.0f, 0.0f}, 1.0}}), std::invalid_argument);
-}
-
-TEST(LocalFit, BrightTilesAreSmallAndStored) {
-    const LocalMap map(suns_target(256, 128), octahedral_bins(5), sized(150, 3000));
-    const AcdfLocal local = map.view().data();
-    ASSERT_GT(local.bright_tile_count, 0u);
-    double share = 0.0;
-    for (std::uint32_t k = 0; k < local.bright_tile_count; ++k) {
-        EXPECT_LE(local.bright_tiles[k].radius, static_cast<float>(BrightTileRule{}.radius) + 1e-3f);
-        share += static_cast<double>(local.bright_tiles[k].share);
-    }
-    EXPECT_GT(share, 0.5); // most of the flux is that of the suns
-    EXPECT_LT(share, 1.05);
-}
-
-/// A sky that ends at the horizon: normals below see so little of it that all of it would alarm, and tiles are not
-/// spent on more bright tiles than there may be.
-TEST(LocalFit, TilesAreNotSpentOnLightsInVain) {
-    ACDF_NOT_SANITIZED();
-    const Target sky = sphere_target(256, 128, [](double, double z) { return z > -0.02 ? 1.0 + z : 0.0; });
-    const NormalBins bins = octahedral_bins(12);
-    const Worth worths = worth(sky, bins, irradiance(light_points(sky), bins));
-    constexpr std::uint32_t count = 1000;
-    ASSERT_GT(divide_tiles(sky, worths, count).bright_tiles,
-              2 * ACDF_MAX_BRIGHT_TILES); // by the rule for most probes
-    const LocalFit fit = fit_local(sky, bins, {count, 16384});
-    EXPECT_LE(fit.tiles.bright_tiles, 2 * ACDF_MAX_BRIGHT_TILES);
-    double largest = 0.0; // of those that hold light
-    for (const Box& tile : fit.tiles.tiles)
-        if (tile.begin[0] < sky.rows / 2 && tile.length(1) < sky.columns)
-            largest =
-                std::max(largest, double(tile.length(1)) * std::sin(ACDF_PI * (tile.begin[0] + 0.5) / sky.rows));
-    EXPECT_LT(largest, sky.columns / 8.0);
 }
 
 /// The mean over ten million samples, spread over a hundred normals.
 TEST(LocalFit, TenMillionSamplesAgree) {
     const int normals = 100, samples = repeated(100000);
-    LocalFileOptions options = sized(200, 4000);
+    LocalFileOptions options = of_size(200, 4000);
     options.cosine_share = 0.1;
     const LocalMap map(suns_target(128, 64), octahedral_bins(6), options);
     const std::vector<Normal> all = hard_normals(map.bins, 7, 60);

@@ -115,7 +115,8 @@ std::vector<MapCase> fine_map_cases() {
     all.erase(std::remove_if(all.begin(), all.end(),
                              [](const MapCase& c) {
                                  const std::string name = c.name;
-                                 return name == "one_row" || name == "one_column" || name == "one_texel";
+                                 return name == "one_row" || name == "one_column" || name == "one_texel" ||
+                                        name == "bright_texel_in_the_dark"; // a sliver of it outshines all
                              }),
               all.end());
     return all;
@@ -328,8 +329,9 @@ TEST_P(FineMaps, IrradianceIsAboutRight) {
     }
 }
 
+/// Where no light is small and bright: else that of bins near its horizon is above what each of their normals gets.
 TEST(LocalMap, IrradianceIsGoodToAFewPerCent) {
-    const LocalMap map(suns_target(256, 128), octahedral_bins(8), of_size(600, 20000));
+    const LocalMap map(sphere_target(256, 128, smooth_sky), octahedral_bins(8), of_size(600, 20000));
     std::mt19937_64 random(8);
     for (int i = 0; i < 60; ++i) {
         const Normal n = random_direction(random);
@@ -338,38 +340,47 @@ TEST(LocalMap, IrradianceIsGoodToAFewPerCent) {
     }
 }
 
+/// The cell of a direction, and where in it that lies.
+struct Place {
+    AcdfRange range[2] = {};
+    double fraction[2] = {};
+
+    Place(const AcdfLocal& local, const AcdfLocalPoint& point, const float direction[3]) {
+        const AcdfGrid grid = acdf_environment_grid(&local.environment);
+        std::uint32_t square[2];
+        double position[2];
+        acdf_sphere_ranges(grid.columns, grid.rows, range);
+        if (!acdf_grid_square(&grid, direction, square, position)) return;
+        acdf_local_find_cell(&local, &point, square, range);
+        acdf_grid_fractions(&grid, direction, position, range, fraction);
+    }
+    bool is_in_cell_of(const Place& other) const {
+        return range[0].low == other.range[0].low && range[1].low == other.range[1].low &&
+               range[0].high == other.range[0].high && range[1].high == other.range[1].high;
+    }
+};
+
 /// Within a cell more of a random number leads to more of its axis.
 TEST_P(Maps, StrataStayStrata) {
     constexpr int steps = 400;
-    const AcdfLocal local = map_->light_view().data();
-    const std::uint32_t columns = map_->target.columns, rows = map_->target.rows;
+    const auto view = map_->light_view();
     std::mt19937_64 random(8);
     int compared = 0;
     for (int k = 0; k < 40; ++k) {
-        const Normal n = random_direction(random);
+        const AcdfLocalPoint at = view.at(random_direction(random).data());
+        if (at.what == ACDF_LOCAL_NOTHING) continue;
         const double other = uniform(random);
         const int axis = k % 2;
-        AcdfRange before[2] = {};
-        double place = 0.0;
+        std::optional<Place> before;
         for (int i = 0; i < steps; ++i) {
             double u[2] = {other, other};
             u[axis] = (i + 0.5) / steps;
-            AcdfLocalPoint source;
-            acdf_local_at(&local, n.data(), &source);
-            if (source.what == ACDF_LOCAL_NOTHING) break;
-            AcdfRange range[2];
-            acdf_sphere_ranges(columns, rows, range);
-            if (source.what == ACDF_LOCAL_BLEND) acdf_local_blend_sample(&local, &source, u, range);
-            else acdf_tree_sample(local.environment.tree, source.by.root, u, range);
-            const bool same = i > 0 && range[0].low == before[0].low && range[1].low == before[1].low &&
-                              range[0].high == before[0].high && range[1].high == before[1].high;
-            if (same) {
-                EXPECT_GT(u[axis], place);
+            const Place place(view.data(), at, view.sample(at, u[0], u[1]).direction);
+            if (before && place.is_in_cell_of(*before)) {
+                EXPECT_GT(place.fraction[axis], before->fraction[axis] - 1e-3); // of a float's rounding
                 ++compared;
             }
-            place = u[axis];
-            before[0] = range[0];
-            before[1] = range[1];
+            before = place;
         }
     }
     EXPECT_GT(compared, 100);

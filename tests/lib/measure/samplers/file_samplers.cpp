@@ -3,6 +3,7 @@
 #include "tests/inputs/local_maps.h"
 #include "tests/lib/measure/samplers/light_sampler_checks.h"
 
+#include "compress/halvings/fit.h"
 #include "measure/samplers/brdf_table.h"
 #include "measure/samplers/light_samplers.h"
 #include "measure/surface_frame.h"
@@ -53,11 +54,12 @@ TEST(FileSamplers, EnvironmentAndLocalFilesSampleByTheirPdf) {
     LocalFileOptions options;
     options.size = {40, 1500};
     const LocalMap map(t, acdf::compress::octahedral_bins(3), options);
-    acdf::compress::FitOptions fit;
-    fit.goal.cells = 200;
+    acdf::compress::HalvingsOptions fit;
+    fit.goal.cells = 1500;
     acdf::compress::Description description = acdf::compress::environment_description(t.columns, t.rows);
     description.total = t.total;
-    const std::vector<std::uint8_t> bytes = acdf::compress::store(acdf::compress::fit(t, fit).tree, description);
+    const std::vector<std::uint8_t> bytes =
+        acdf::compress::store(acdf::compress::fit_halvings(t, fit), description);
     acdf::File environment;
     ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), environment).ok());
 
@@ -67,7 +69,7 @@ TEST(FileSamplers, EnvironmentAndLocalFilesSampleByTheirPdf) {
     EXPECT_EQ(local->bytes(), map.bytes.size() + map.file.table_bytes());
     // Inflated chunks are in memory, too.
     const std::vector<std::uint8_t> packed =
-        acdf::compress::store(acdf::compress::fit(t, fit).tree, description, ACDF_CODEC_ZLIB);
+        acdf::compress::store(acdf::compress::fit_halvings(t, fit), description, ACDF_CODEC_ZLIB);
     acdf::File inflated;
     ASSERT_TRUE(acdf::File::from_memory(packed.data(), packed.size(), inflated).ok());
     EXPECT_LT(packed.size(), bytes.size());

@@ -32,7 +32,7 @@ Action<Bytes()> partner_field(std::size_t at, int size, std::uint64_t value) {
     return partner(complete_file(), partner_chunk(ACDF_PARTNER_COSINE, 1, 0.0f),
                    [=](Bytes& raw) { set(raw, at, size, value); });
 }
-FileSpec local_file() { return shared_local().file(); }
+FileSpec local_file() { return separate_local().file(); }
 std::uint32_t bins_of(const FileSpec& file) {
     std::uint32_t count;
     std::memcpy(&count, file.chunks[0].raw.data() + 24, 4);

@@ -85,8 +85,6 @@ std::vector<Case> normals_cases() {
              f.chunks[bins].raw = acdf_test::encode(std::vector<BinSpec>(6, {0, 0.5f}));
          })},
         {7005, "no_local_beside_normals", file([](FileSpec& f) { f.chunks.erase(f.chunks.begin() + local); })},
-        {7006, "a_bright_tile_of_normals",
-         file([](FileSpec& f) { f.chunks[local].raw = lit_local().local_chunk(); })},
     };
 }
 

@@ -1,7 +1,7 @@
 // Files with portals that break one rule each.
 #include "tests/lib/reader/check/cases.h"
 #include "tests/lib/reader/load.h"
-#include "tests/lib/reader/local_builder.h"
+#include "tests/lib/reader/normals_builder.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ constexpr float no_bound = std::numeric_limits<float>::infinity();
 
 MakePortals windowed(Action<void(PortalsSpec&)> change) {
     return [=] {
-        LocalSpec spec = windowed_local();
+        NormalsSpec spec = windowed_normals();
         change(*spec.portals);
         return spec.encode();
     };
@@ -27,7 +27,7 @@ MakePortals windowed(Action<void(PortalsSpec&)> change) {
 // Changes the payload of PORT.
 MakePortals portal_payload(Action<void(Bytes&)> change) {
     return [=] {
-        FileSpec file = windowed_local().file();
+        FileSpec file = windowed_normals().file();
         change(file.chunks.back().raw);
         return file.encode();
     };
@@ -36,7 +36,7 @@ MakePortals portal_word(std::size_t at, std::uint64_t value) {
     return portal_payload([=](Bytes& raw) { set(raw, at, 4, value); });
 }
 
-constexpr std::size_t sums_begin = 16 + 3 * 24 + 2 * 40; // of windowed_local
+constexpr std::size_t sums_begin = 16 + 3 * 24 + 2 * 40; // of windowed_normals
 
 } // namespace
 
@@ -44,19 +44,19 @@ std::vector<Case> portal_cases() {
     return {
         {3009, "critical_portals",
          [] {
-             FileSpec file = windowed_local().file();
+             FileSpec file = windowed_normals().file();
              file.chunks.back().flags = 1;
              return file.encode();
          }},
         {3013, "portals_of_an_environment",
          [] {
              FileSpec file = complete_file();
-             file.chunks.push_back({"PORT", windowed_local().portals->encode(), 0, false});
+             file.chunks.push_back({"PORT", windowed_normals().portals->encode(), 0, false});
              return file.encode();
          }},
         {7016, "without_visibility",
          [] {
-             LocalSpec spec = windowed_local();
+             NormalsSpec spec = windowed_normals();
              spec.visibility.reset();
              return spec.encode();
          }},
@@ -93,7 +93,7 @@ std::vector<Case> portal_cases() {
 namespace {
 
 TEST(PortalRules, whatIsAtTheirLimitsIsRight) {
-    expect_valid(windowed_local().encode());
+    expect_valid(windowed_normals().encode());
     expect_valid(windowed([](PortalsSpec& p) { // one portal, of one piece, and a map of one cell without light
         p.portals.resize(1);
         p.maps.resize(1);
@@ -106,7 +106,7 @@ TEST(PortalRules, whatIsAtTheirLimitsIsRight) {
         p.pieces = 4;
         for (Bytes& row : p.rows) row.resize(1 + 8 * 16);
     })());
-    LocalSpec zipped = windowed_local();
+    NormalsSpec zipped = windowed_normals();
     zipped.zlib = true;
     expect_valid(zipped.encode());
 }

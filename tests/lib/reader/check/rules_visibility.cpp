@@ -1,7 +1,7 @@
 // Files with visibility cells that break one rule each.
 #include "tests/lib/reader/check/cases.h"
 #include "tests/lib/reader/load.h"
-#include "tests/lib/reader/local_builder.h"
+#include "tests/lib/reader/normals_builder.h"
 
 #include <gtest/gtest.h>
 
@@ -16,20 +16,20 @@ using Make = Action<Bytes()>;
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-Make changed(LocalSpec (*make)(), Action<void(VisibilitySpec&)> change) {
+Make changed(NormalsSpec (*make)(), Action<void(VisibilitySpec&)> change) {
     return [=] {
-        LocalSpec spec = make();
+        NormalsSpec spec = make();
         change(*spec.visibility);
         return spec.encode();
     };
 }
-Make with_cells(Action<void(VisibilitySpec&)> change) { return changed(visibility_local, std::move(change)); }
-Make regional(Action<void(VisibilitySpec&)> change) { return changed(regional_local, std::move(change)); }
+Make with_cells(Action<void(VisibilitySpec&)> change) { return changed(visible_normals, std::move(change)); }
+Make regional(Action<void(VisibilitySpec&)> change) { return changed(regional_normals, std::move(change)); }
 
 // Changes the payload of PLAC.
 Make payload(Action<void(Bytes&)> change) {
     return [=] {
-        FileSpec file = visibility_local().file();
+        FileSpec file = visible_normals().file();
         change(file.chunks.back().raw);
         return file.encode();
     };
@@ -54,21 +54,21 @@ std::vector<Case> visibility_cases() {
     return {
         {3009, "critical_visibility",
          [] {
-             FileSpec file = visibility_local().file();
+             FileSpec file = visible_normals().file();
              file.chunks.back().flags = 1;
              return file.encode();
          }},
         {3013, "visibility_of_an_environment",
          [] {
              FileSpec file = complete_file();
-             file.chunks.push_back({"PLAC", visibility_local().visibility->encode(), 0, false});
+             file.chunks.push_back({"PLAC", visible_normals().visibility->encode(), 0, false});
              return file.encode();
          }},
-        {7009, "without_tiles",
+        {7009, "without_rows",
          [] {
-             LocalSpec spec = separate_local();
-             spec.visibility = visibility_local().visibility;
-             return spec.encode();
+             FileSpec file = separate_local().file();
+             file.chunks.push_back({"PLAC", visible_normals().visibility->encode(), 0, false});
+             return file.encode();
          }},
         {7009, "empty", payload([](Bytes& raw) { raw.clear(); })},
         {7009, "cut_in_the_header", payload([](Bytes& raw) { raw.resize(87); })},
@@ -100,19 +100,17 @@ std::vector<Case> visibility_cases() {
         {7012, "infinite_position", with_cells([](VisibilitySpec& p) { p.splits[0].position = infinite; })},
         {7012, "negative_blend", with_cells([](VisibilitySpec& p) { p.splits[0].blend = -0.5f; })},
         {7012, "infinite_blend", with_cells([](VisibilitySpec& p) { p.splits[1].blend = infinite; })},
-        {7013, "columns_swapped", with_cells([](VisibilitySpec& p) {
-             p.columns = {1, 0};
+        {7013, "column_at_the_first_tile", with_cells([](VisibilitySpec& p) { p.columns[1].tile = 0; })},
+        {7013, "column_behind_the_tiles", with_cells([](VisibilitySpec& p) { p.columns[0].tile = 3; })},
+        {7013, "column_twice", with_cells([](VisibilitySpec& p) { p.columns[1].tile = 2; })},
+        {7013, "column_left_out", with_cells([](VisibilitySpec& p) { p.columns[0].parts = no_lower_column; })},
+        {7013, "no_such_column", with_cells([](VisibilitySpec& p) { p.columns[1].parts = 0; })},
+        {7013, "column_that_comes_too_early", with_cells([](VisibilitySpec& p) {
+             p.columns = {{1, 1}, {2, no_lower_column}};
          })},
-        {7013, "column_twice", with_cells([](VisibilitySpec& p) {
-             p.columns = {0, 0};
-         })},
-        {7013, "column_left_out", with_cells([](VisibilitySpec& p) {
-             p.columns = {0, 2};
-         })},
-        {7013, "no_columns_of_a_set", regional([](VisibilitySpec& p) { p.columns[3] = 0xFFFF; })},
-        {7013, "columns_of_a_set", regional([](VisibilitySpec& p) { p.columns[3] = 1; })},
-        {7014, "nothing_below", with_cells([](VisibilitySpec& p) { p.rows[0][2] = 0; })},
-        {7014, "nothing_above", with_cells([](VisibilitySpec& p) { p.rows[2][3] = 255; })},
+        {7013, "column_of_a_set", regional([](VisibilitySpec& p) { p.columns[1].tile = 4; })},
+        {7014, "nothing_below", with_cells([](VisibilitySpec& p) { p.rows[0][1] = 0; })},
+        {7014, "nothing_above", with_cells([](VisibilitySpec& p) { p.rows[2][2] = 255; })},
         {7015, "no_such_set", regional([](VisibilitySpec& p) { p.set_of_row[2] = 2; })},
     };
 }
@@ -120,18 +118,18 @@ std::vector<Case> visibility_cases() {
 namespace {
 
 TEST(VisibilityRules, whatIsAtTheirLimitsIsRight) {
-    expect_valid(visibility_local().encode());
+    expect_valid(visible_normals().encode());
     expect_valid(chain_of_cells(64)());
-    expect_valid(regional_local().encode());
+    expect_valid(regional_normals().encode());
     expect_valid(with_cells([](VisibilitySpec& p) { // one cell
         p.splits.clear();
         p.rows.resize(1);
     })());
-    expect_valid(with_cells([](VisibilitySpec& p) { // nothing but the mixture and the light
-        p.columns = {0xFFFF, 0xFFFF};
-        for (Bytes& row : p.rows) row.resize(2);
+    expect_valid(with_cells([](VisibilitySpec& p) { // no column
+        p.columns.clear();
+        for (Bytes& row : p.rows) row.resize(1);
     })());
-    LocalSpec zipped = visibility_local();
+    NormalsSpec zipped = visible_normals();
     zipped.zlib = true;
     expect_valid(zipped.encode());
 }

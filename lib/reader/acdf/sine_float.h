@@ -1,0 +1,26 @@
+/* Sine and cosine in floats. One text for processors and for shaders of every language (acdf/dialect.h). */
+#ifndef ACDF_SINE_FLOAT_H
+#define ACDF_SINE_FLOAT_H
+
+#include <acdf/dialect.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- sine and cosine -------------------------------------------------------------------------------- */
+
+/* Sine and cosine for |y| <= pi/4, interpolated at the Chebyshev nodes of y^2; error below 1e-7. */
+ACDF_FN1(ACDF_F32, acdf_sine_float, ACDF_F32, y) {
+    ACDF_LET(ACDF_F32, q) = y * y;
+    return y + y * q * (-0.16666651f + q * (0.0083320351f + q * -0.00019503819f));
+}
+ACDF_FN1(ACDF_F32, acdf_cosine_float, ACDF_F32, y) {
+    ACDF_LET(ACDF_F32, q) = y * y;
+    return 1.0f + q * (-0.5f + q * (0.041666616f + q * (-0.0013886617f + q * 2.4379725e-5f)));
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
