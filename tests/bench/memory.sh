@@ -40,7 +40,6 @@ for probe in "$@"; do
 --budget 64KiB --max-weight 3
 --budget 64KiB --compress zlib
 --fit cdf
---shape cascade
 LIST
 done
 exit $status

@@ -436,7 +436,7 @@ void add_sweep(CLI::App& program, int& exit_code) {
         "a file for each map with as many bytes in all.",
         "acdf sweep probe.exr -o out\n"
         "acdf sweep probe.exr -o out --scene room.obj\n"
-        "acdf sweep probe.exr -o out --files local,local-separate --budgets 64KiB,256KiB,1MB\n"
+        "acdf sweep probe.exr -o out --files local,local-mis --budgets 64KiB,256KiB,1MB\n"
         "acdf sweep 'day.####.exr' -o out --budgets 16KiB,64KiB\n"
         "acdf sweep nickel.binary -o out --spp 16\n"
         "acdf sweep ggx:alpha=0.1 -o out --files variance,cdf --no-timing"));
