@@ -20,7 +20,7 @@ struct Halvings {
 /// Bytes of chunk HALV. `leaves`: of all trees.
 std::size_t halvings_bytes(std::size_t leaves, std::uint32_t axis_bits, std::uint32_t code_bits,
                            std::size_t trees = 1);
-/// Bits that tell so many axes apart.
+/// Bits of the number of one of so many axes.
 std::uint32_t axis_bits_for(std::size_t axes);
 std::vector<std::uint8_t> halvings_chunk(const Halvings& halvings);
 /// The same in memory that is used again.

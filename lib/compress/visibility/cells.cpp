@@ -181,24 +181,18 @@ std::vector<VisibilityCells::Range> VisibilityCells::regions(std::uint32_t count
     return out;
 }
 
-std::vector<double> VisibilityCells::loss(const Range& range) const {
-    std::vector<double> out(light_.parts, 0.0);
+VisibilityCells::Parts VisibilityCells::parts(const Range& range) const {
+    Parts out{std::vector<double>(light_.parts, 0.0), std::vector<double>(light_.parts, 0.0)};
     for (std::uint32_t cell = range.begin; cell < range.end; ++cell) {
         const Node& node = nodes_[node_of_cell_[cell]];
         VisibilitySums sums(light_.parts);
-        for (std::uint32_t i = node.begin; i < node.end; ++i) sums.add(light_.of(order_[i]), 1.0f);
-        for (std::size_t p = 0; p < out.size(); ++p)
-            out[p] += std::sqrt(double{sums.seen[p]} * double{sums.all[p]}) - double{sums.seen[p]};
-    }
-    return out;
-}
-
-std::vector<double> VisibilityCells::light(const Range& range) const {
-    std::vector<double> out(light_.parts, 0.0);
-    for (std::uint32_t cell = range.begin; cell < range.end; ++cell) {
-        const Node& node = nodes_[node_of_cell_[cell]];
-        for (std::uint32_t i = node.begin; i < node.end; ++i)
-            for (std::size_t p = 0; p < out.size(); ++p) out[p] += double{std::fabs(light_.of(order_[i])[p])};
+        for (std::uint32_t i = node.begin; i < node.end; ++i) {
+            const float* given = light_.of(order_[i]);
+            sums.add(given, 1.0f);
+            for (std::size_t p = 0; p < light_.parts; ++p) out.light[p] += double{std::fabs(given[p])};
+        }
+        for (std::size_t p = 0; p < light_.parts; ++p)
+            out.loss[p] += std::sqrt(double{sums.seen[p]} * double{sums.all[p]}) - double{sums.seen[p]};
     }
     return out;
 }

@@ -187,7 +187,8 @@ std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, co
     std::vector<std::uint8_t> rows(tree.cell_count() * width);
     std::atomic<std::size_t> done{0};
     parallel_for(std::size_t{0}, regions.size(), [&](std::size_t r) {
-        const VisibilityParts parts(coarse, tree.loss(regions[r]), tree.light(regions[r]));
+        const VisibilityCells::Parts own_parts = tree.parts(regions[r]);
+        const VisibilityParts parts(coarse, own_parts.loss, own_parts.light);
         const VisibilityRows told =
             visibility_rows(parts, tree, regions[r], shares, division.points, scene.occluded, division.light.dark);
         const std::vector<AcdfColumn>& own = parts.columns();

@@ -17,7 +17,7 @@ struct VisibilityFrame {
 
 struct VisibilitySize {
     std::uint64_t bytes = 3 << 20; ///< of the chunks, at most (but for those of one cell)
-    std::uint32_t columns = 0;     ///< splits that cells distinguish; 0: as suits the size
+    std::uint32_t columns = 0;     ///< 0: as suits the size
 };
 
 /// The chunk PLAC, and PORT where the scene has portals, for a local environment on one tree of halvings;

@@ -23,6 +23,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_rows_sample(const AcdfLocal* local, c
     const AcdfTopTile* tile;
     double share;
     if (point->cells == 0) return acdf_rows_sample(local->rows_of_normals, tree, grid, &point->by.rows, u);
+    acdf_local_cells(local, point, &cells);
     in = acdf_local_visible_rows(local, point, &cells);
     tile = acdf_visible_sample_tile(&in, u, &share);
     return acdf_rows_direction(tree, grid, tile, share, u);

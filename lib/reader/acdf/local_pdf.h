@@ -13,6 +13,7 @@ ACDF_INLINE double acdf_local_row_share(const AcdfLocal* local, const AcdfLocalP
     AcdfVisibilityMixture cells;
     AcdfVisibleRows in;
     if (point->cells == 0) return acdf_rows_mass(&point->by.rows, tile, tile + 1u) * 0x1p-52;
+    acdf_local_cells(local, point, &cells);
     in = acdf_local_visible_rows(local, point, &cells);
     return acdf_visible_share(&in, tile);
 }

@@ -103,11 +103,10 @@ ACDF_INLINE void acdf_local_cells(const AcdfLocal* local, const AcdfLocalPoint* 
     acdf_visibility_open(&local->visibility, out);
 }
 
-/* The rows of a point as its position sees them; `cells` become its own. */
+/* The rows of a point as its cells, which are open, see them. */
 ACDF_INLINE AcdfVisibleRows acdf_local_visible_rows(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                    AcdfVisibilityMixture* cells) {
+                                                    const AcdfVisibilityMixture* cells) {
     AcdfVisibleRows out;
-    acdf_local_cells(local, point, cells);
     out.rows = local->rows_of_normals;
     out.mix = &point->by.rows;
     out.table = &local->visibility;

@@ -151,8 +151,8 @@ inline NormalsSpec small_normals() {
     return spec;
 }
 
-/// small_normals with four cells: x < 1; above it y < 0.5; the rest, by the z of normals. All three tiles are told
-/// apart.
+/// small_normals with four cells: x < 1; above it y < 0.5; the rest, by the z of normals. Each tile is a part
+/// of its own.
 inline NormalsSpec visible_normals() {
     NormalsSpec spec = small_normals();
     spec.visibility.emplace();

@@ -87,10 +87,7 @@ ACDF_INLINE double acdf_cut_lower(const AcdfLocal* local, const AcdfLocalPoint* 
                                   const AcdfCutPart* part, const AcdfRowSplit* split) {
     AcdfVisibleRows in;
     if (point->cells == 0) return acdf_rows_mass(&point->by.rows, part->first, split->tile) * 0x1p-52;
-    in.rows = local->rows_of_normals;
-    in.mix = &point->by.rows;
-    in.table = &local->visibility;
-    in.cells = &cut->cells;
+    in = acdf_local_visible_rows(local, point, &cut->cells);
     return acdf_clamp(acdf_visible_before(&in, split->tile) - acdf_visible_before(&in, part->first), 0.0,
                       part->sum);
 }
