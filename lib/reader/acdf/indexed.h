@@ -267,11 +267,9 @@ ACDF_INLINE double acdf_mixed_descend(const AcdfMixed* sky, double u[2], AcdfSpa
     tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + (at & ~ACDF_TOP_TILE);
     for (axis = 0; axis < 2; ++axis) {
         u[axis] = acdf_clamp(x[axis] / of[axis], 0.0, 1.0);
-        box[axis] = tile->box[axis];
     }
-    if (tile->node == ACDF_LEAF) return here * tile->scale;
-    share = acdf_tile_descend(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile, u, box);
-    return here * share * acdf_box_scale(ACDF_TOP_ARRAY(double, top, top->heights), &sky->grid, box);
+    share = acdf_tile_sample(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile, u, box);
+    return here * share * acdf_tile_scale(ACDF_TOP_ARRAY(double, top, top->heights), &sky->grid, tile, box);
 }
 
 /* The tile that holds a grid step of each axis. */
@@ -296,12 +294,9 @@ ACDF_INLINE double acdf_mixed_cell(const AcdfMixed* sky, const uint32_t position
     const uint32_t at = acdf_top_find(top, position);
     const AcdfTopTile* tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + at;
     const double here = acdf_mixed_steps(sky, ACDF_TOP_ARRAY(uint32_t, top, top->of_tile) + (size_t)at * top->maps);
-    double share;
-    box[0] = tile->box[0];
-    box[1] = tile->box[1];
-    if (tile->node == ACDF_LEAF) return here * 0x1p-52 * tile->scale;
-    share = acdf_tile_find(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile, position, box);
-    return here * 0x1p-52 * share * acdf_box_scale(ACDF_TOP_ARRAY(double, top, top->heights), &sky->grid, box);
+    const double share = acdf_tile_find(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile, position, box);
+    return here * 0x1p-52 * share *
+           acdf_tile_scale(ACDF_TOP_ARRAY(double, top, top->heights), &sky->grid, tile, box);
 }
 
 /* ---- samples and pdfs ----------------------------------------------------------------------------------- */

@@ -162,20 +162,18 @@ typedef struct AcdfRowCell {
 /* The cell of a tile that u[2] lead to; u is rescaled to [0, 1] in it. */
 ACDF_INLINE AcdfRowCell acdf_rows_sample_cell(const AcdfHalvedTree* tree, const AcdfGrid* grid,
                                               const AcdfTopTile* tile, double u[2]) {
-    AcdfRowCell out = {1.0, tile->scale, {tile->box[0], tile->box[1]}};
-    if (tile->node == ACDF_LEAF) return out;
-    out.share = acdf_tile_descend(acdf_halvings_nodes(tree), tile, u, out.box);
-    out.scale = acdf_box_scale(acdf_halved_heights(tree), grid, out.box);
+    AcdfRowCell out;
+    out.share = acdf_tile_sample(acdf_halvings_nodes(tree), tile, u, out.box);
+    out.scale = acdf_tile_scale(acdf_halved_heights(tree), grid, tile, out.box);
     return out;
 }
 
 /* The one that holds a grid step of each axis. */
 ACDF_INLINE AcdfRowCell acdf_rows_find_cell(const AcdfHalvedTree* tree, const AcdfGrid* grid,
                                             const AcdfTopTile* tile, const uint32_t position[2]) {
-    AcdfRowCell out = {1.0, tile->scale, {tile->box[0], tile->box[1]}};
-    if (tile->node == ACDF_LEAF) return out;
+    AcdfRowCell out;
     out.share = acdf_tile_find(acdf_halvings_nodes(tree), tile, position, out.box);
-    out.scale = acdf_box_scale(acdf_halved_heights(tree), grid, out.box);
+    out.scale = acdf_tile_scale(acdf_halved_heights(tree), grid, tile, out.box);
     return out;
 }
 
@@ -244,9 +242,7 @@ ACDF_FN double acdf_rows_choose(const AcdfNormalRows* rows, const AcdfHalvedTree
                                 double u[2], AcdfSpan box[2]) {
     double share;
     const AcdfTopTile* tile = acdf_rows_sample_tile(rows, mix, u, &share);
-    box[0] = tile->box[0];
-    box[1] = tile->box[1];
-    return tile->node == ACDF_LEAF ? share : share * acdf_tile_descend(acdf_halvings_nodes(tree), tile, u, box);
+    return share * acdf_tile_sample(acdf_halvings_nodes(tree), tile, u, box);
 }
 
 /* The cell that holds a grid step of each axis, and its probability. */
@@ -255,9 +251,6 @@ ACDF_FN double acdf_rows_find(const AcdfNormalRows* rows, const AcdfHalvedTree* 
     const uint32_t number = acdf_rows_find_tile(rows, position);
     const AcdfTopTile* tile = acdf_row_tile(rows, number);
     const double share = acdf_rows_mass(mix, number, number + 1u) * 0x1p-52;
-    box[0] = tile->box[0];
-    box[1] = tile->box[1];
-    if (tile->node == ACDF_LEAF || !(share > 0.0)) return share;
     return share * acdf_tile_find(acdf_halvings_nodes(tree), tile, position, box);
 }
 

@@ -69,10 +69,21 @@ ACDF_OUTLINE_ON_CPU double acdf_tile_descend(const AcdfHalving* nodes, const Acd
     return acdf_steps_in(steps) / acdf_steps_in(tile->steps);
 }
 
-/* The cell of a tile, which is no leaf, that holds a grid step of each axis. Returns its share. */
+/* The cell of a tile that u[2] in [0, 1] lead to, and in which they are rescaled. Returns its share. */
+ACDF_INLINE double acdf_tile_sample(const AcdfHalving* nodes, const AcdfTopTile* tile, double u[2],
+                                    AcdfSpan box[2]) {
+    box[0] = tile->box[0];
+    box[1] = tile->box[1];
+    return tile->node == ACDF_LEAF ? 1.0 : acdf_tile_descend(nodes, tile, u, box);
+}
+
+/* The cell of a tile that holds a grid step of each axis. Returns its share. */
 ACDF_INLINE double acdf_tile_find(const AcdfHalving* nodes, const AcdfTopTile* tile, const uint32_t position[2],
                                   AcdfSpan box[2]) {
     AcdfSpan steps[2];
+    box[0] = tile->box[0];
+    box[1] = tile->box[1];
+    if (tile->node == ACDF_LEAF) return 1.0;
     steps[0] = tile->steps[0];
     steps[1] = tile->steps[1];
     acdf_halvings_find(nodes, tile->node, position, steps, box);
@@ -85,6 +96,12 @@ ACDF_INLINE double acdf_box_scale(const double* heights, const AcdfGrid* grid, c
                               ? 2.0 * (double)(box[1].end[1] - box[1].end[0]) / (double)grid->rows
                               : heights[box[1].end[0]] - heights[box[1].end[1]];
     return (double)grid->columns / (2.0 * ACDF_PI * (double)(box[0].end[1] - box[0].end[0]) * height);
+}
+
+/* The same of a cell of a tile. */
+ACDF_INLINE double acdf_tile_scale(const double* heights, const AcdfGrid* grid, const AcdfTopTile* tile,
+                                   const AcdfSpan box[2]) {
+    return tile->node == ACDF_LEAF ? tile->scale : acdf_box_scale(heights, grid, box);
 }
 
 /* The direction that random numbers in [0, 1] pick in a box. */

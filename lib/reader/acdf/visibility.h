@@ -141,8 +141,9 @@ typedef struct AcdfVisibleRows {
     const AcdfVisibilityMixture* cells; /* some */
 } AcdfVisibleRows;
 
-#define ACDF_UNSEEN 0x1p-6 /* of the samples, those that are as without cells: no weight grows more than 64-fold   \
-                            */
+#define ACDF_UNSEEN                                                                                                \
+    0x1p-6 /* of the samples, those that are as without cells: no weight grows more than 64-fold                   \
+            */
 #define ACDF_NO_PARTS 0xFFFFFFFFu
 
 /* Tiles [first, end) of a cell, parted at `column`, or ACDF_NO_PARTS: of the mixture, out of 2^52, `below` lie
