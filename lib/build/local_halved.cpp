@@ -22,8 +22,8 @@ constexpr double kBytesOfCell = 3.0;    // of a file, about
 /// Of a file with visibility cells: one part in so many is for all that is there without them.
 constexpr std::uint64_t kLocalPart = 4;
 constexpr std::uint64_t kMostLocal = 400000; // bytes: more tiles are more than columns can tell apart
-constexpr std::uint64_t kLeastCells = 1024; // bytes of a few visibility cells
-constexpr std::uint64_t kMetadata = 1024;   // of names and options, most often more than they take
+constexpr std::uint64_t kLeastCells = 1024;  // bytes of a few visibility cells
+constexpr std::uint64_t kMetadata = 1024;    // of names and options, most often more than they take
 
 class HalvedLocals {
 public:

@@ -66,8 +66,8 @@ public:
     Range around(std::uint32_t cell) const { return nodes_[nodes_[node_of_cell_[cell]].parent].cells; }
     /// Of each part, summed over the cells of a range.
     struct Parts {
-        std::vector<double> loss; ///< by how much its root of the second moment is larger than it were if all rays
-                                  ///< of a cell either arrived or did not
+        std::vector<double> loss;  ///< by how much its root of the second moment is larger than it were if all rays
+                                   ///< of a cell either arrived or did not
         std::vector<double> light; ///< what it would give to the points
     };
     Parts parts(const Range& range) const;
