@@ -294,7 +294,7 @@ void check_halved(const Payloads& payloads, [[maybe_unused]] u32 kind, const Acd
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (kind == ACDF_KIND_TABLE) return check_table_kind(payloads, report, allocator, parts);
 #endif
-    check_halvings(halvings, report, allocator, parts);
+    check_halvings(halvings, nullptr, report, allocator, parts);
     if (report.stopped()) return;
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (kind == ACDF_KIND_INDEXED)

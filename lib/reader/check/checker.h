@@ -82,8 +82,10 @@ inline std::uint64_t round_up(std::uint64_t n, std::uint64_t to) noexcept { retu
 ACDF_ONCE void check_description(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
 /// META. Sets parts.metadata if it is well-formed.
 ACDF_ONCE void check_metadata(const Payload& payload, Report& report, Parts& parts) noexcept;
-/// HALV; needs parts.description. Sets parts.halvings.
-void check_halvings(const Payload& payload, Report& report, const AcdfAllocator& allocator, Parts& parts) noexcept;
+/// HALV: one tree, or of tables, whose `bins` is BINS, one for each bin with a share; needs parts.description, and
+/// parts.bins of tables. Sets parts.halvings.
+void check_halvings(const Payload& payload, const Payload* bins, Report& report, const AcdfAllocator& allocator,
+                    Parts& parts) noexcept;
 /// What the kind asks of axes and bins; needs parts.description. Axes 0 and 1 must be those of an environment.
 ACDF_ONCE void check_environment_axes(const Payload& payload, Report& report, const Parts& parts) noexcept;
 ACDF_ONCE void check_environment(const Payload& description, const Payload& bins, Report& report,

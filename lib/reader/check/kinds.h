@@ -32,9 +32,6 @@ void check_rows(const Payloads& payloads, Report& report, Parts& parts) noexcept
 /// What a local environment on one tree of halvings has beside HALV: BINS, NORM and LOCL; needs parts.halvings.
 /// Sets parts.normals and what belongs to it.
 void check_normals(const Payloads& payloads, Report& report, Parts& parts) noexcept;
-/// HALV of a table, with a tree for each of `bins` with a share; needs parts.bins. Sets parts.halvings.
-void check_table_halvings(const Payload& payload, const Payload& bins, Report& report,
-                          const AcdfAllocator& allocator, Parts& parts) noexcept;
 /// The same of tables, and BINS and HALV. Sets parts.bins and parts.halvings.
 void check_table_kind(const Payloads& payloads, Report& report, const AcdfAllocator& allocator,
                       Parts& parts) noexcept;

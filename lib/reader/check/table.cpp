@@ -78,7 +78,7 @@ void check_table_kind(const Payloads& payloads, Report& report, const AcdfAlloca
     check_table_weights(description, report, *parts.description);
     if (bins.data && !report.stopped()) check_table_bins(bins, report, parts); // else rule 3004
     if (parts.bins && !report.stopped())
-        check_table_halvings(payloads.of[chunk_halvings], bins, report, allocator, parts);
+        check_halvings(payloads.of[chunk_halvings], &bins, report, allocator, parts);
 }
 
 } // namespace acdf

@@ -1,6 +1,8 @@
 // The distribution itself: BINS and TREE. Linear in their bytes: the curves are visited in file order, which
 // comes after every path that leads to them because links only go forward.
-#include "check/tree_roots.h"
+#include "check/kinds.h"
+
+#include <acdf/sample.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -40,15 +42,43 @@ struct Starts {
     }
 };
 
-struct Tree : CheckedTree {
-    Starts starts;
-    Mark* marks;
+struct Tree {
+    const Payload& payload;
+    const Payload& bins;
+    const Parts& parts;
+    u32 kind, units;
+    Starts starts = {};
+    Mark* marks = nullptr;
 
+    const u8* data() const { return payload.data; }
+    bool sampled(u32 axis) const {
+        return axis < parts.description->axis_count && parts.axes[axis].role == ACDF_AXIS_SAMPLED;
+    }
+    u32 unit(u32 at) const { return reinterpret_cast<const std::uint16_t*>(payload.data)[at]; }
     u64 at(u32 unit) const { return payload.at(u64{unit} * 2); }
     u64 at(const u8* byte) const { return payload.at(static_cast<u64>(byte - payload.data)); }
     bool starts_at(u64 unit) const { return unit < units && starts.at(static_cast<u32>(unit)); }
     Mark& mark(u32 unit) const { return marks[starts.index(unit)]; }
 };
+
+// Calls `visit(unit, bin)` for each root. Unit 0 is one too in local environments, whose bins need not be stored;
+// nor need those of BRDFs.
+template <class Visit>
+void for_each_root(const Tree& tree, const Visit& visit) {
+    const bool local = tree.kind == ACDF_KIND_LOCAL, stored = !local && tree.kind != ACDF_KIND_BRDF;
+    if (local) visit(0, 0);
+    for (u32 bin = 0; bin < tree.parts.description->bin_count; ++bin)
+        if (const u32 root = tree.parts.bins[bin].root; stored || root != ACDF_NO_ROOT) visit(root, bin);
+}
+
+// The number of segments of a curve, 0 where it is missing, too large or written in the wrong form.
+u32 segments_of(const Tree& tree, u32 unit) {
+    const u32 few = tree.unit(unit) >> ACDF_CURVE_SEGMENTS_SHIFT;
+    if (few != 0) return few;
+    if (tree.units - unit < 3) return 0;
+    const u32 many = tree.unit(unit + 1) | tree.unit(unit + 2) << 16;
+    return many > ACDF_CURVE_SHORT_SEGMENTS && many <= ACDF_MAX_SEGMENTS ? many : 0;
+}
 
 /// Calls `visit(unit, curve)` for each curve in file order.
 template <class Visit>
@@ -77,7 +107,7 @@ bool find_curves(const Tree& tree, u32& curves, Report& report) {
             return false;
         }
         const u32 header = tree.unit(unit);
-        if (!header_is_legal(header)) {
+        if (ACDF_CURVE_CUMULATIVE_CODE(header) > 2 || ACDF_CURVE_POSITION_CODE(header) > 2) {
             report.add(6004, at, "the header of the curve at unit %u is %04x", unit, header);
             return false;
         }
@@ -207,9 +237,9 @@ void check_reach(const Tree& tree, u32 unit, Report& report) {
 }
 
 void check_curves(const Tree& tree, Report& report) {
-    TreeRoots roots(tree);
-    for (TreeRoot root; roots.next(root);)
-        if (tree.starts_at(root.unit)) tree.mark(root.unit).b = 1; // depth 1, nothing tilted
+    for_each_root(tree, [&](u32 root, u32) {
+        if (tree.starts_at(root)) tree.mark(root).b = 1; // depth 1, nothing tilted
+    });
     for_each_curve(tree, report, [&](u32 unit, const AcdfCurve& curve) {
         check_reach(tree, unit, report);
         check_values(tree, unit, curve, report);
@@ -270,8 +300,7 @@ void check_ranges(const Tree& tree, u32 curves, u32 axis, Report& report) {
     const u32 resolution = tree.parts.axes[axis].resolution;
     if (resolution == 0 || resolution >= disagree) return; // rule 5014
     for (u32 i = 0; i < curves; ++i) tree.marks[i] = {0, unreached};
-    TreeRoots roots(tree);
-    for (TreeRoot root; roots.next(root);) narrow(tree.mark(root.unit), 0, resolution);
+    for_each_root(tree, [&](u32 root, u32) { narrow(tree.mark(root), 0, resolution); });
     for_each_curve(tree, report,
                    [&](u32 unit, const AcdfCurve& curve) { check_knots(tree, unit, curve, axis, report); });
 }
@@ -295,9 +324,10 @@ bool check_bins(const Payload& payload, Report& report, Parts& parts) {
 }
 
 void check_roots(const Tree& tree, Report& report) {
-    TreeRoots roots(tree);
-    for (TreeRoot root; !report.stopped() && roots.next(root);)
-        if (!tree.starts_at(root.unit)) report.add(6010, root.at, "bin %u: unit %u", root.bin, root.unit);
+    for_each_root(tree, [&](u32 root, u32 bin) {
+        if (!tree.starts_at(root))
+            report.add(6010, tree.bins.at(u64{bin} * sizeof(AcdfBin)), "bin %u: unit %u", bin, root);
+    });
 }
 
 void check_marked_tree(const Tree& tree, u32 curves, Report& report) {
@@ -309,31 +339,14 @@ void check_marked_tree(const Tree& tree, u32 curves, Report& report) {
         if (tree.sampled(axis)) check_ranges(tree, curves, axis, report);
 }
 
-void no_memory(const Payload& payload, u64 bytes, Report& report) {
-    report.add(1003, payload.at(0), "%llu bytes to check the tree", static_cast<ull>(bytes));
-}
-
 void check_found_curves(Tree& tree, Report& report) {
     u32 curves = 0;
-    const Payload& payload = tree.payload;
     if (!find_curves(tree, curves, report)) return;
     count_before(tree.units, tree.starts);
     tree.marks = static_cast<Mark*>(std::calloc(curves, sizeof(Mark)));
-    if (!tree.marks) return no_memory(payload, u64{curves} * sizeof(Mark), report);
-    check_marked_tree(tree, curves, report);
+    if (tree.marks) check_marked_tree(tree, curves, report);
+    else report.add(1003, tree.at(u32{0}), "%u curves to check", curves);
     std::free(tree.marks);
-}
-
-// Of a tree in any order, with marks for each of its curves.
-void find_faults(const CheckedTree& checked, Report& report) {
-    const u64 runs = checked.units / 64 + 1;
-    const Starts starts{static_cast<u64*>(std::calloc(runs, sizeof(u64))),
-                        static_cast<u32*>(std::calloc(runs, sizeof(u32)))};
-    Tree tree{checked, starts, nullptr};
-    if (starts.bits && starts.before) check_found_curves(tree, report);
-    else no_memory(checked.payload, runs * (sizeof(u64) + sizeof(u32)), report);
-    std::free(starts.bits);
-    std::free(starts.before);
 }
 
 } // namespace
@@ -349,8 +362,14 @@ void check_tree(const Payload& bins, const Payload& payload, u32 kind, Report& r
     if (!bins_ok || parts.description->bin_count == 0) return;
     parts.tree = payload.data;
     parts.tree_units = static_cast<u32>(units);
-    const CheckedTree tree{payload, bins, parts, kind, parts.tree_units};
-    if (!is_right_in_preorder(tree)) find_faults(tree, report);
+    const u64 runs = units / 64 + 1;
+    Tree tree{payload, bins, parts, kind, parts.tree_units};
+    tree.starts = {static_cast<u64*>(std::calloc(runs, sizeof(u64))),
+                   static_cast<u32*>(std::calloc(runs, sizeof(u32)))};
+    if (tree.starts.bits && tree.starts.before) check_found_curves(tree, report);
+    else report.add(1003, payload.at(0), "%llu units of a tree to check", static_cast<ull>(units));
+    std::free(tree.starts.bits);
+    std::free(tree.starts.before);
 }
 
 } // namespace acdf

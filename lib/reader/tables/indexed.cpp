@@ -191,7 +191,7 @@ AcdfTop* make_top(const Parts& parts, bool lookup, const AcdfAllocator& allocato
     top->bits = layout.bits;
     top->starts = static_cast<u32>(layout.starts);
     for (u32 axis = 0; axis < 2; ++axis)
-        top->position_scale[axis] = top_position_scale(parts.axes[axis].resolution, layout.bits);
+        top->position_scale[axis] = static_cast<u32>(position_scale(parts.axes[axis].resolution, layout.bits));
     u32* words = static_cast<u32*>(block.data);
     if (parts.halving_count)
         std::memcpy(words + top->nodes, parts.halvings, parts.halving_count * sizeof(AcdfHalving));

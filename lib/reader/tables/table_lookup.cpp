@@ -1,9 +1,10 @@
 #include "tables/table_lookup.h"
 
+#include "lookup_walk.h"
 #include "memory.h"
 
 #include <cstring>
-#include <new>
+#include <initializer_list>
 
 namespace acdf {
 
@@ -15,101 +16,66 @@ using u64 = std::uint64_t;
 constexpr u32 nodes_a_square = 2; // at least
 constexpr u32 least_nodes = 16;   // of a bin that has grids
 
-// Finds the deepest node that holds each square of the grids of a bin.
+// Fills the grids of bins with the numbers of starts, or counts these alone.
 class GridMaker {
 public:
-    explicit GridMaker(const AcdfTable& table) : table_(table), axes_(acdf_table_sampled_count(&table)) {}
+    explicit GridMaker(const AcdfTable& table)
+        : table_(table), axes_(acdf_table_sampled_count(&table)), walk_(table.nodes, axes_) {
+        for (u32 axis = 0; axis < axes_; ++axis) resolution_[axis] = acdf_table_axis(&table, axis)->resolution;
+    }
 
     u32 starts = 0;
 
-    // `lookup` gets the starts of `squares`; both are null to count alone.
-    void make(const AcdfTableGrid& grid, u32 root, bool by_position, AcdfTableLookup* lookup, u32* squares) {
-        grid_ = &grid;
-        by_position_ = by_position;
-        lookup_ = lookup;
-        squares_ = squares;
-        open_[0].node = root;
-        acdf_table_whole(&table_, &open_[0].place);
-        for (u32 axis = 0; axis < axes_; ++axis) open_[0].squares[axis] = {{0, 1u << grid.bits[axis]}};
-        open_count_ = 1;
-        while (open_count_ > 0) visit();
+    // `lookup` is null to count alone.
+    void make(const AcdfTableGrid& grid, u32 root, AcdfTableLookup* lookup) {
+        u32* const words = reinterpret_cast<u32*>(lookup);
+        for (const bool by_position : {false, true}) {
+            Squares squares[ACDF_MAX_AXES];
+            for (u32 axis = 0; axis < axes_; ++axis)
+                squares[axis] = by_position ? squares_of_positions(grid.scale[axis], grid.bits[axis])
+                                            : squares_of_numbers(grid.bits[axis]);
+            walk_.run(root, resolution_, squares, by_position, [&](u32 node) {
+                if (words) {
+                    put(node, words + lookup->starts + std::size_t{starts} * lookup->start_words);
+                    fill(grid, words + (by_position ? grid.positions : grid.numbers));
+                }
+                ++starts;
+            });
+        }
     }
 
 private:
-    struct Open {
-        u32 node;
+    void put(u32 node, u32* words) const {
+        auto& start = *reinterpret_cast<AcdfTableStart*>(words);
+        auto* const spans = reinterpret_cast<AcdfSpan*>(&start + 1);
         AcdfTablePosition place;
-        AcdfSpan squares[ACDF_MAX_AXES]; // those that lie in the node
-    };
-
-    void visit() {
-        const Open node = open_[--open_count_];
-        if (node.node == ACDF_LEAF) return put(node, node.squares);
-        const AcdfHalving halving = table_.nodes[node.node];
-        const u32 axis = halving.link & 7u, middle = acdf_span_middle(&node.place.box[axis]);
-        const u32 border = by_position_ ? middle : halving.threshold;
-        // Squares that end below the border, and those that begin below it: one more, where it lies within one.
-        const AcdfSpan all = node.squares[axis];
-        const u32 below = within(all, square_of(axis, border));
-        const u32 above = border > 0 ? within(all, square_of(axis, border - 1) + 1) : below;
-        Open across = node;
-        across.squares[axis] = {{below, above}};
-        put(node, across.squares);
-        for (u32 upper = 2; upper-- > 0;) {
-            Open& half = open_[open_count_];
-            half = node;
-            half.node = halving.link >> (3 + upper) & 1u ? ACDF_LEAF : node.node + (upper ? halving.link >> 5 : 1);
-            half.place.steps[axis].end[1 - upper] = halving.threshold;
-            half.place.box[axis].end[1 - upper] = middle;
-            half.squares[axis].end[1 - upper] = upper ? above : below;
-            open_count_ += has_any(half.squares);
+        for (u32 axis = 0; axis < axes_; ++axis) {
+            place.steps[axis] = spans[axis] = walk_.steps[axis];
+            place.box[axis] = spans[axes_ + axis] = walk_.box[axis];
         }
+        start = {node, 0, 0.0};
+        if (const double p = acdf_table_probability(&table_, &place); node == ACDF_LEAF && p > 0.0)
+            start.pdf = acdf_table_cell_pdf(&table_, p, &place);
     }
 
-    u32 square_of(u32 axis, u32 step) const {
-        return by_position_ ? acdf_table_square(grid_, axis, step)
-                            : static_cast<u32>(u64{step} >> (31 - grid_->bits[axis]));
-    }
-    static u32 within(const AcdfSpan& span, u32 square) {
-        return square < span.end[0] ? span.end[0] : square > span.end[1] ? span.end[1] : square;
-    }
-    bool has_any(const AcdfSpan* squares) const {
-        for (u32 axis = 0; axis < axes_; ++axis)
-            if (squares[axis].end[0] >= squares[axis].end[1]) return false;
-        return true;
-    }
-
-    void put(const Open& node, const AcdfSpan* at) {
-        if (!has_any(at)) return;
-        if (squares_) {
-            u32* const words = reinterpret_cast<u32*>(lookup_) + lookup_->starts + starts * lookup_->start_words;
-            auto& start = *reinterpret_cast<AcdfTableStart*>(words);
-            start = {node.node, 0, 0.0};
-            if (const double p = acdf_table_probability(&table_, &node.place); node.node == ACDF_LEAF && p > 0.0)
-                start.pdf = acdf_table_cell_pdf(&table_, p, &node.place);
-            auto* const spans = reinterpret_cast<AcdfSpan*>(&start + 1);
-            std::memcpy(spans, node.place.steps, axes_ * sizeof(AcdfSpan));
-            std::memcpy(spans + axes_, node.place.box, axes_ * sizeof(AcdfSpan));
-            fill(at, 0, 0);
+    void fill(const AcdfTableGrid& grid, u32* squares) const {
+        u32 at[ACDF_MAX_AXES], axis = 0;
+        for (; axis < axes_; ++axis) at[axis] = walk_.squares[axis].end[0];
+        while (axis > 0) {
+            u32 square = 0;
+            for (axis = 0; axis < axes_; ++axis) square = square << grid.bits[axis] | at[axis];
+            squares[square] = starts;
+            while (axis > 0 && ++at[axis - 1] == walk_.squares[axis - 1].end[1]) { // the next one
+                --axis;
+                at[axis] = walk_.squares[axis].end[0];
+            }
         }
-        ++starts;
-    }
-    void fill(const AcdfSpan* at, u32 axis, u32 square) {
-        if (axis == axes_) {
-            squares_[square] = starts;
-            return;
-        }
-        for (u32 i = at[axis].end[0]; i < at[axis].end[1]; ++i) fill(at, axis + 1, square << grid_->bits[axis] | i);
     }
 
     const AcdfTable& table_;
     u32 axes_;
-    const AcdfTableGrid* grid_ = nullptr;
-    bool by_position_ = false;
-    AcdfTableLookup* lookup_ = nullptr;
-    u32* squares_ = nullptr;
-    u32 open_count_ = 0;
-    Open open_[31 * ACDF_MAX_AXES + 1]; // a level of each axis, and one
+    u32 resolution_[ACDF_MAX_AXES];
+    LookupWalk walk_;
 };
 
 // Grids over the axes that are longest for their squares; without any for small trees.
@@ -127,7 +93,7 @@ AcdfTableGrid grid_for(const AcdfTable& table, u32 nodes) {
         ++grid.all_bits;
     }
     for (u32 axis = 0; axis < axes; ++axis)
-        grid.scale[axis] = (u64{1} << (32 + grid.bits[axis])) / acdf_table_axis(&table, axis)->resolution;
+        grid.scale[axis] = position_scale(acdf_table_axis(&table, axis)->resolution, grid.bits[axis]);
     return grid;
 }
 
@@ -143,16 +109,18 @@ void for_each_tree(const AcdfTable& table, u32 bins, u32 count, const Visit& vis
 
 std::size_t to_cache_line(std::size_t words) { return (words + 15) / 16 * 16; }
 
-void make_grids(AcdfTable& table, u32 bins, u32 count, std::size_t most_bytes, const AcdfAllocator& allocator,
-                GridMaker& maker, AcdfBlock& block) {
+} // namespace
+
+void make_table_lookup(AcdfTable& table, u32 bins, u32 count, std::size_t most_bytes,
+                       const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
+    GridMaker maker(table);
     const u32 start_words = 4 + 4 * acdf_table_sampled_count(&table);
     std::size_t squares = 0;
     for_each_tree(table, bins, count, [&](u32 bin, u32 nodes) {
         const AcdfTableGrid grid = grid_for(table, nodes);
         if (grid.all_bits == 0) return;
         squares += std::size_t{2} << grid.all_bits;
-        maker.make(grid, table.bins[bin].root, false, nullptr, nullptr);
-        maker.make(grid, table.bins[bin].root, true, nullptr, nullptr);
+        maker.make(grid, table.bins[bin].root, nullptr);
     });
     const std::size_t nodes_at = to_cache_line(sizeof(AcdfTableLookup) / 4);
     const std::size_t grids_at = to_cache_line(nodes_at + std::size_t{2} * count);
@@ -179,19 +147,8 @@ void make_grids(AcdfTable& table, u32 bins, u32 count, std::size_t most_bytes, c
         grid.numbers = next;
         grid.positions = next + (1u << grid.all_bits);
         next += 2u << grid.all_bits;
-        maker.make(grid, table.bins[bin].root, false, lookup, at + grid.numbers);
-        maker.make(grid, table.bins[bin].root, true, lookup, at + grid.positions);
+        maker.make(grid, table.bins[bin].root, lookup);
     });
-}
-
-} // namespace
-
-void make_table_lookup(AcdfTable& table, u32 bins, u32 count, std::size_t most_bytes,
-                       const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
-    AcdfBlock scratch = take_block({}, sizeof(GridMaker)); // too much for the small stacks of WebAssembly
-    if (!scratch.data) return;
-    make_grids(table, bins, count, most_bytes, allocator, *new (scratch.data) GridMaker(table), block);
-    give_block({}, scratch);
 }
 
 } // namespace acdf

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "check/check.h"
+#include "lookup_walk.h"
 
 #include <acdf/top_tile.h>
 
@@ -15,10 +16,6 @@ inline std::uint32_t top_lookup_bits(const Parts& parts, std::uint32_t splits) {
            2u << bits < parts.axes[ACDF_AXIS_THETA].resolution)
         ++bits;
     return bits;
-}
-
-inline std::uint32_t top_position_scale(std::uint32_t resolution, std::uint32_t bits) {
-    return static_cast<std::uint32_t>((std::uint64_t{1} << (32 + bits)) / resolution);
 }
 
 /// Fills a grid of `bits`. split(at, axis, middle) sets the axis and middle of a split; child(at, upper) is its

@@ -55,12 +55,6 @@ TEST(Allocation, inPlaceOnlyTheScratchOfTheChecks) {
     EXPECT_LE(10 * bytes_taken, 21 * bytes.size()); // 8 bytes a curve, 12 a run of 64 units
 }
 
-TEST(Allocation, noneToCheckTreesInPreorder) {
-    check_in_place(preorder_environment().encode());
-    EXPECT_EQ(calls, 1u); // what an open file is
-    EXPECT_LE(bytes_taken, 4096u);
-}
-
 TEST(Allocation, nothingForWhatIsRefusedBefore) {
     EnvironmentSpec spec = large();
     spec.zlib = true; // 800 kB from about 1 kB
