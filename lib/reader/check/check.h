@@ -14,8 +14,8 @@
 #include <cstring>
 #include <type_traits>
 
-// Functions that run once a file: what they take in the profile of environments is room, not time.
-#if defined(ACDF_ENVIRONMENT_ONLY) && defined(__GNUC__)
+// Functions that run once a file and have no long loops: what they take is room, not time.
+#if defined(__GNUC__)
 #define ACDF_ONCE __attribute__((cold))
 #else
 #define ACDF_ONCE

@@ -6,34 +6,36 @@
 namespace acdf {
 
 /// All that lies beside DESC and META, but HALV; needs parts.description.
-void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Parts& parts) noexcept;
 
 /// BINS and TREE; needs parts.description. Sets parts.bins, parts.tree.
 void check_tree(const Payload& bins, const Payload& tree, std::uint32_t kind, Report& report,
                 Parts& parts) noexcept;
 /// The same of local environments, and LOCL. Sets parts.local.
-void check_local_kind(const Payload& description, const Payload& local, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_local_kind(const Payload& description, const Payload& local, Report& report,
+                                Parts& parts) noexcept;
 /// PLAC and PORT of a local environment, where they are; needs what check_local_kind and check_rows set. Sets
 /// parts.visibility and parts.portals if they are right.
-void check_seen(const Payloads& payloads, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_seen(const Payloads& payloads, Report& report, Parts& parts) noexcept;
 /// PORT; needs parts.visibility.
-void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
-void check_brdf_kind(const Payloads& payloads, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_brdf_kind(const Payloads& payloads, Report& report, Parts& parts) noexcept;
 /// What a BRDF on one tree of halvings has beside HALV: BINS, NORM and VIEW; needs parts.halvings. Sets what
 /// check_rows and check_brdf_kind set.
-void check_halved_brdf(const Payloads& payloads, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_halved_brdf(const Payloads& payloads, Report& report, Parts& parts) noexcept;
 /// What an indexed environment has beside HALV: MAPS and its axes; needs parts.halvings. Sets parts.maps and what
 /// belongs to it.
-void check_indexed(const Payload& description, const Payload& maps, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_indexed(const Payload& description, const Payload& maps, Report& report,
+                             Parts& parts) noexcept;
 /// BINS and NORM, of bins that have rows at the top of a tree of halvings; needs parts.halvings. Sets parts.bins,
 /// parts.normals and what belongs to it.
 void check_rows(const Payloads& payloads, Report& report, Parts& parts) noexcept;
 /// What a local environment on one tree of halvings has beside HALV: BINS, NORM and LOCL; needs parts.halvings.
 /// Sets parts.normals and what belongs to it.
-void check_normals(const Payloads& payloads, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_normals(const Payloads& payloads, Report& report, Parts& parts) noexcept;
 /// The same of tables, and BINS and HALV. Sets parts.bins and parts.halvings.
-void check_table_kind(const Payloads& payloads, Report& report, const AcdfAllocator& allocator,
-                      Parts& parts) noexcept;
+ACDF_ONCE void check_table_kind(const Payloads& payloads, Report& report, const AcdfAllocator& allocator,
+                                Parts& parts) noexcept;
 
 } // namespace acdf

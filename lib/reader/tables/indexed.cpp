@@ -2,7 +2,7 @@
 
 #include "check/bits.h"
 #include "memory.h"
-#include "tables/top_lookup.h"
+#include "tables/top_tree.h"
 
 #include <cstring>
 
@@ -13,7 +13,6 @@ namespace {
 using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 
-constexpr u32 most_open_tops = 128; // nodes that wait: a level of each axis, and one
 constexpr u32 most_levels = 64;
 
 u64 to_top_line(u64 words) { return (words + 15) / 16 * 16; }
@@ -41,15 +40,18 @@ struct TopLayout {
 class TopMaker {
 public:
     TopMaker(const Parts& parts, AcdfTop* top)
-        : parts_(parts), maps_(*parts.maps), top_(top), splits_(array<AcdfTopSplit>(top->top)),
-          tiles_(array<AcdfTopTile>(top->tiles)) {
+        : parts_(parts), tree_(parts, parts.map_splits), maps_(*parts.maps), top_(top),
+          splits_(array<AcdfTopSplit>(top->top)), tiles_(array<AcdfTopTile>(top->tiles)) {
         for (u32 code = 0; code < 1u << maps_.code_bits; ++code)
             share_[code] = acdf_halving_share(code, maps_.code_bits);
     }
 
     void run() {
-        count_levels();
-        make_splits();
+        tree_.for_each_split(tree_.root(), [&](u32, u32 level) { return ++first_[level + 1], true; });
+        for (u32 level = 1; level <= most_levels; ++level) first_[level] += first_[level - 1];
+        const u32 child = take(tree_.root(), 0);
+        for (u32 map = 0; map < maps_.map_count; ++map) row(child)[map] = ACDF_STEPS;
+        if (!(child & ACDF_TOP_TILE)) make_split(tree_.root(), child, 0);
         fill_top_starts(
             top_->bits, top_->position_scale, array<u32>(top_->starts),
             [&](u32 at, u32& axis, u32& middle) { axis = splits_[at].axis, middle = splits_[at].middle; },
@@ -57,80 +59,29 @@ public:
     }
 
 private:
-    struct Open {
-        u32 node, number, level;
-        AcdfSpan steps[2], box[2];
-    };
-
     template <class T>
     T* array(u32 offset) const {
         return reinterpret_cast<T*>(reinterpret_cast<u32*>(top_) + offset);
     }
-    bool has_codes(u32 node) const { return node != ACDF_LEAF && (parts_.map_splits[node / 8] >> node % 8 & 1u); }
-    u32 half_of(u32 node, u32 upper) const {
-        const u32 link = parts_.halvings[node].link;
-        return link >> (3 + upper) & 1u ? ACDF_LEAF : node + (upper ? link >> 5 : 1);
-    }
-
-    // first_[n] becomes the number of the first split of level n.
-    void count_levels() {
-        u32 count[most_levels] = {}, waiting = 0;
-        struct Waiting {
-            u32 node, level;
-        } open[most_open_tops];
-        if (maps_.split_count > 0) open[waiting++] = {0, 0};
-        while (waiting > 0) {
-            const Waiting at = open[--waiting];
-            ++count[at.level];
-            for (u32 upper = 0; upper < 2; ++upper)
-                if (const u32 half = half_of(at.node, upper); has_codes(half))
-                    open[waiting++] = {half, at.level + 1};
-        }
-        for (u32 level = 0; level + 1 < most_levels; ++level) first_[level + 1] = first_[level] + count[level];
-    }
-
-    // In preorder, in which codes stand. A split whose row is not made yet has there what leads to it.
-    void make_splits() {
-        u32 waiting = 0, rank = 0;
-        Open root = {};
-        root.node = parts_.halving_count ? 0 : ACDF_LEAF;
-        for (u32 axis = 0; axis < 2; ++axis) {
-            root.steps[axis] = {{0, ACDF_STEPS}};
-            root.box[axis] = {{0, parts_.axes[axis].resolution}};
-        }
-        const u32 child = take(root);
-        for (u32 map = 0; map < maps_.map_count; ++map) row(child)[map] = ACDF_STEPS;
-        if (!(child & ACDF_TOP_TILE)) open_[waiting++] = root;
-        while (waiting > 0) {
-            const Open at = open_[--waiting];
-            const AcdfHalving halving = parts_.halvings[at.node];
-            const u32 axis = halving.link & 7u, middle = acdf_span_middle(&at.box[axis]);
-            AcdfTopSplit& split = splits_[at.number];
-            split.axis = axis;
-            split.middle = middle;
-            for (u32 upper = 2; upper-- > 0;) {
-                Open half = at;
-                half.node = half_of(at.node, upper);
-                half.level = at.level + 1;
-                half.steps[axis].end[1 - upper] = halving.threshold;
-                half.box[axis].end[1 - upper] = middle;
-                split.child[upper] = take(half);
-                if (!(split.child[upper] & ACDF_TOP_TILE)) open_[waiting++] = half;
-            }
-            add_rows(split, at.number, rank++);
-        }
-    }
-
-    // The number of a node, which is a split or becomes a tile.
-    u32 take(Open& node) {
-        if (has_codes(node.node)) return node.number = first_[node.level]++;
-        const AcdfGrid grid = {parts_.axes[ACDF_AXIS_PHI].resolution, parts_.axes[ACDF_AXIS_THETA].resolution,
-                               parts_.description->parameterization};
-        tiles_[tile_count_] = {acdf_box_scale(array<double>(top_->heights), &grid, node.box),
-                               node.node,
-                               {node.steps[0], node.steps[1]},
-                               {node.box[0], node.box[1]}};
+    // The number of the node that is visited, which is a split or becomes a tile.
+    u32 take(u32 node, u32 level) {
+        if (tree_.is_split(node)) return first_[level]++;
+        tiles_[tile_count_] = tree_.tile(node, array<double>(top_->heights));
         return ACDF_TOP_TILE | tile_count_++;
+    }
+
+    // In preorder, in which codes stand, and what is below. A split whose row is not made yet has there what leads
+    // to it.
+    void make_split(u32 node, u32 number, u32 level) {
+        AcdfTopSplit& split = splits_[number];
+        split.axis = tree_.axis_of(node);
+        split.middle = acdf_span_middle(&tree_.box[split.axis]);
+        for (u32 upper = 2; upper-- > 0;)
+            tree_.narrowed(node, upper, [&](u32 half) { split.child[upper] = take(half, level + 1); });
+        add_rows(split, number, rank_++);
+        for (u32 upper = 0; upper < 2; ++upper)
+            if (!(split.child[upper] & ACDF_TOP_TILE))
+                tree_.narrowed(node, upper, [&](u32 half) { make_split(half, split.child[upper], level + 1); });
     }
 
     u32* row(u32 child) const {
@@ -161,14 +112,14 @@ private:
     }
 
     const Parts& parts_;
+    TopTree tree_;
     const AcdfMapsHeader& maps_;
     AcdfTop* top_;
     AcdfTopSplit* splits_;
     AcdfTopTile* tiles_;
-    u32 tile_count_ = 0;
-    u32 first_[most_levels] = {};
+    u32 tile_count_ = 0, rank_ = 0;
+    u32 first_[most_levels + 1] = {}; // the number of the next split of each level
     u32 share_[1u << ACDF_MOST_CODE_BITS];
-    Open open_[most_open_tops];
 };
 
 AcdfTop* make_top(const Parts& parts, bool lookup, const AcdfAllocator& allocator, AcdfBlock& block) {

@@ -2,7 +2,7 @@
 
 #include "check/row_codes.h"
 #include "memory.h"
-#include "tables/top_lookup.h"
+#include "tables/top_tree.h"
 
 namespace acdf {
 
@@ -22,90 +22,16 @@ u32 most_of_group(u64 tiles) {
     return most;
 }
 
-// Goes through the top of the tree in preorder: groups are its largest parts of at most so many tiles.
-class TopWalk {
-public:
-    struct Open {
-        u32 node;
-        u32 parent; // and side: 2 split + upper
-        bool grouped;
-        AcdfSpan steps[2], box[2];
-    };
-    static constexpr u32 no_parent = 0xFFFFFFFFu;
-
-    TopWalk(const Parts& parts, const RowCodes& codes)
-        : parts_(parts), codes_(codes), most_(most_of_group(parts.normals->split_count + u64{1})) {}
-
-    // Calls group(at) for each that begins one, then split(at) or tile(at).
-    template <class Group, class Split, class Tile>
-    void run(const Group& group, const Split& split, const Tile& tile) {
-        u32 waiting = 0, splits = 0;
-        open_[waiting++] = root();
-        while (waiting > 0) {
-            Open at = open_[--waiting];
-            if (!at.grouped && tiles_below(at.node) <= most_) {
-                group(at);
-                at.grouped = true;
-            }
-            if (!is_split(at.node)) {
-                tile(at);
-                continue;
-            }
-            const AcdfHalving halving = parts_.halvings[at.node];
-            const u32 axis = halving.link & 7u, middle = acdf_span_middle(&at.box[axis]);
-            split(at, axis, middle);
-            for (u32 upper = 2; upper-- > 0;) {
-                Open half = at;
-                half.node =
-                    halving.link >> (3 + upper) & 1u ? ACDF_LEAF : at.node + (upper ? halving.link >> 5 : 1);
-                half.parent = 2 * splits + upper;
-                half.steps[axis].end[1 - upper] = halving.threshold;
-                half.box[axis].end[1 - upper] = middle;
-                open_[waiting++] = half;
-            }
-            ++splits;
-        }
-    }
-
-private:
-    bool is_split(u32 node) const { return node != ACDF_LEAF && codes_.has_codes(node); }
-
-    Open root() const {
-        Open out = {};
-        out.node = parts_.halving_count ? 0 : ACDF_LEAF;
-        out.parent = no_parent;
-        for (u32 axis = 0; axis < 2; ++axis) {
-            out.steps[axis] = {{0, ACDF_STEPS}};
-            out.box[axis] = {{0, parts_.axes[axis].resolution}};
-        }
-        return out;
-    }
-
-    u64 tiles_below(u32 node) const {
-        u32 open[most_open_halvings], waiting = 0;
-        u64 count = 1;
-        if (is_split(node)) open[waiting++] = node;
-        for (; waiting > 0; ++count) {
-            const u32 at = open[--waiting], link = parts_.halvings[at].link;
-            if (!(link >> 3 & 1u) && codes_.has_codes(at + 1)) open[waiting++] = at + 1;
-            if (!(link >> 4 & 1u) && codes_.has_codes(at + (link >> 5))) open[waiting++] = at + (link >> 5);
-        }
-        return count;
-    }
-
-    const Parts& parts_;
-    const RowCodes& codes_;
-    u32 most_;
-    Open open_[most_open_halvings];
-};
-
 class NormalRowsMaker {
 public:
     NormalRowsMaker(const Parts& parts, RowCodes& codes, const double* heights, AcdfNormalRows* rows)
-        : parts_(parts), codes_(codes), heights_(heights), rows_(rows), splits_(array<AcdfRowSplit>(rows->split)) {}
+        : parts_(parts), tree_(parts, parts.normal_splits), codes_(codes), heights_(heights), rows_(rows),
+          splits_(array<AcdfRowSplit>(rows->split)) {}
 
     void run() {
-        make_splits();
+        u32* const first = array<u32>(rows_->first);
+        take(tree_.root(), first, false);
+        first[groups_] = tiles_;
         for (u32 r = 0; r < rows_->rows; ++r) make_row(r);
         for (u32 code = 0; rows_->odds && code < kOddsCodes; ++code)
             array<double>(rows_->odds)[code] = acdf_halving_share(code, ACDF_ODDS_BITS) * 0x1p-31;
@@ -119,46 +45,30 @@ public:
     }
 
 private:
-    using Open = TopWalk::Open;
-
     template <class T>
     T* array(u32 offset) const {
         return reinterpret_cast<T*>(reinterpret_cast<u32*>(rows_) + offset);
     }
 
-    // `tiles`: how many there are before.
-    void link(const Open& at, u32 child, u32 tiles) {
-        if (at.parent == TopWalk::no_parent) return;
-        AcdfRowSplit& parent = splits_[at.parent >> 1];
-        parent.child[at.parent & 1u] = child;
-        if (at.parent & 1u) parent.tile = tiles;
-    }
-
-    // Splits, tiles and groups are numbered in preorder.
-    void make_splits() {
-        u32 splits = 0, tiles = 0, groups = 0;
-        u32* const first = array<u32>(rows_->first);
-        TopWalk(parts_, codes_)
-            .run([&](const Open&) { first[groups++] = tiles; },
-                 [&](const Open& at, u32 axis, u32 middle) {
-                     link(at, splits, tiles);
-                     splits_[splits++].place = axis | middle << 1;
-                 },
-                 [&](const Open& at) {
-                     link(at, ACDF_TOP_TILE | tiles, tiles);
-                     put_tile(at, tiles++);
-                 });
-        first[groups] = tiles;
-    }
-
-    void put_tile(const Open& at, u32 number) {
-        const AcdfGrid grid = {parts_.axes[ACDF_AXIS_PHI].resolution, parts_.axes[ACDF_AXIS_THETA].resolution,
-                               parts_.description->parameterization};
-        const bool sphere = grid.parameterization != ACDF_PARAM_HALF_ANGLE; // else the pdf is not that of a cell
-        array<AcdfTopTile>(rows_->tiles)[number] = {sphere ? acdf_box_scale(heights_, &grid, at.box) : 0.0,
-                                                    at.node,
-                                                    {at.steps[0], at.steps[1]},
-                                                    {at.box[0], at.box[1]}};
+    // Splits, tiles and groups, the largest parts of at most so many tiles, are numbered in preorder. Returns the
+    // number of a split or tile.
+    u32 take(u32 node, u32* first, bool grouped) {
+        if (!grouped && tree_.tiles_below(node) <= most_of_group(rows_->splits + u64{1})) {
+            first[groups_++] = tiles_;
+            grouped = true;
+        }
+        if (!tree_.is_split(node)) {
+            array<AcdfTopTile>(rows_->tiles)[tiles_] = tree_.tile(node, heights_);
+            return ACDF_TOP_TILE | tiles_++;
+        }
+        const u32 number = split_count_++, axis = tree_.axis_of(node);
+        AcdfRowSplit& split = splits_[number];
+        split.place = axis | acdf_span_middle(&tree_.box[axis]) << 1;
+        for (u32 upper = 0; upper < 2; ++upper) {
+            split.tile = tiles_; // of the upper half at last
+            tree_.narrowed(node, upper, [&](u32 half) { split.child[upper] = take(half, first, grouped); });
+        }
+        return number;
     }
 
     // Each tile but the first is the first one of the upper half of a split.
@@ -175,10 +85,12 @@ private:
     }
 
     const Parts& parts_;
+    TopTree tree_;
     RowCodes& codes_;
     const double* heights_;
     AcdfNormalRows* rows_;
     AcdfRowSplit* splits_;
+    u32 split_count_ = 0, tiles_ = 0, groups_ = 0;
     const Payload payload_ = {parts_.normal_splits, parts_.normals_size, 0, false};
     Bits bits_{payload_, 4 * words_for(parts_.halving_count), parts_.normals_size};
 };
@@ -215,7 +127,13 @@ AcdfNormalRows* make_normal_rows(const Parts& parts, bool lookup, const double* 
     AcdfNormalRows out = {};
     out.rows = parts.normals->row_count;
     out.splits = parts.normals->split_count;
-    TopWalk(parts, codes).run([&](const auto&) { ++out.groups; }, [](const auto&, u32, u32) {}, [](const auto&) {});
+    const TopTree tree(parts, parts.normal_splits);
+    tree.for_each_split(tree.root(), [&](u32 split, u32) {
+        const bool parted = tree.tiles_below(split) > most_of_group(out.splits + u64{1});
+        out.groups += parted;
+        return parted;
+    });
+    ++out.groups;
     if (lookup) out.bits = top_lookup_bits(parts, out.splits);
     if (!lay_out(parts, out)) return nullptr;
     block = take_block(allocator, 4 * std::size_t{out.words});
