@@ -4,6 +4,7 @@
 #include "halved_tree.h"
 #include "input_file.h"
 #include "memory.h"
+#include "message.h"
 #include "opened_file.h"
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include "tables/indexed.h"
@@ -13,7 +14,6 @@
 #include <acdf/environment_view.h>
 
 #include <cstdarg>
-#include <cstdio>
 #include <cstring>
 #include <new>
 #include <utility>
@@ -46,10 +46,10 @@ void fail_at(Status& status, int rule, u64 offset, const char* detail) {
     status.rule = rule;
     status.offset = offset;
 #ifdef ACDF_ENVIRONMENT_ONLY
-    std::snprintf(status.message, sizeof status.message, "%s%srule %d of SPEC.md is broken at byte %llu", detail,
+    write_message(status.message, sizeof status.message, "%s%srule %d of SPEC.md is broken at byte %llu", detail,
                   *detail ? ": " : "", rule, static_cast<ull>(offset));
 #else
-    std::snprintf(status.message, sizeof status.message, "%s (rule %d at byte %llu: %s)", detail, rule,
+    write_message(status.message, sizeof status.message, "%s (rule %d at byte %llu: %s)", detail, rule,
                   static_cast<ull>(offset), find_rule(rule)->sentence);
 #endif
     tidy(status.message);
@@ -63,7 +63,7 @@ fail(Status& status, int rule, const char* format, ...) {
     char detail[160];
     va_list arguments;
     va_start(arguments, format);
-    std::vsnprintf(detail, sizeof detail, format, arguments);
+    write_message(detail, sizeof detail, format, arguments);
     va_end(arguments);
     fail_at(status, rule, 0, detail);
     return false;
@@ -76,7 +76,7 @@ void name_file(Status& status, const char* path) {
     const char* shown = length > longest ? path + (length - longest) : path;
     while (shown > path && (*shown & 0xC0) == 0x80) ++shown;
     char whole[sizeof status.message];
-    std::snprintf(whole, sizeof whole, "%s%s: %.200s", shown > path ? "..." : "", shown, status.message);
+    write_message(whole, sizeof whole, "%s%s: %s", shown > path ? "..." : "", shown, status.message);
     tidy(whole);
     std::memcpy(status.message, whole, sizeof whole);
 }

@@ -1,4 +1,5 @@
-// Samples and pdfs as symbols: loops over the inline functions.
+// Samples and pdfs as symbols: loops over the inline functions. Single calls are arrays of one, so that the code is
+// there once.
 #include "opened_file.h"
 
 #include <cmath>
@@ -15,6 +16,15 @@ constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 float keep(const DirectionSample& sample, float direction[3]) {
     if (sample.pdf > 0.0f) std::memcpy(direction, sample.direction, sizeof sample.direction);
     return sample.pdf;
+}
+
+// The first sample of an array, if any: call(u, direction, pdf).
+template <class Call>
+float keep_first(double u0, double u1, float direction[3], const Call& call) {
+    const double u[2] = {u0, u1};
+    DirectionSample sample = {};
+    call(u, sample.direction, &sample.pdf);
+    return keep(sample, direction);
 }
 
 void put(const DirectionSample& sample, std::size_t i, float* directions, float* pdfs) {
@@ -50,12 +60,15 @@ void put_numbers(bool found, int axes, double* u) {
 } // namespace
 
 float acdf_sample_environment(const AcdfFile* file, double u0, double u1, float direction[3]) {
-    if (file->kind() != ACDF_KIND_ENVIRONMENT) return 0.0f;
-    return keep(acdf_environment_sample(&file->environment, u0, u1), direction);
+    return keep_first(u0, u1, direction, [file](const double* u, float* out, float* pdf) {
+        acdf_sample_environment_array(file, u, 1, out, pdf);
+    });
 }
 
 float acdf_pdf_environment(const AcdfFile* file, const float direction[3]) {
-    return file->kind() == ACDF_KIND_ENVIRONMENT ? acdf_environment_pdf(&file->environment, direction) : 0.0f;
+    float pdf = 0.0f;
+    acdf_pdf_environment_array(file, direction, 1, &pdf);
+    return pdf;
 }
 
 int acdf_sample_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
@@ -113,12 +126,15 @@ int acdf_irradiance_local_array(const AcdfFile* file, const float* normals, size
 }
 
 float acdf_sample_brdf(const AcdfFile* file, const float wo[3], double u0, double u1, float wi[3]) {
-    if (file->kind() != ACDF_KIND_BRDF) return 0.0f;
-    return keep(acdf_brdf_sample(&file->brdf, wo, u0, u1), wi);
+    return keep_first(u0, u1, wi, [file, wo](const double* u, float* out, float* pdf) {
+        acdf_sample_brdf_array(file, wo, 1, u, 1, out, pdf);
+    });
 }
 
 float acdf_pdf_brdf(const AcdfFile* file, const float wo[3], const float wi[3]) {
-    return file->kind() == ACDF_KIND_BRDF ? acdf_brdf_pdf(&file->brdf, wo, wi) : 0.0f;
+    float pdf = 0.0f;
+    acdf_pdf_brdf_array(file, wo, 1, wi, 1, &pdf);
+    return pdf;
 }
 
 int acdf_sample_brdf_array(const AcdfFile* file, const float* wo, size_t each, const double* u, size_t count,

@@ -31,6 +31,8 @@ fi
 for file in acdf.mjs acdf.d.ts acdf.wasm shaders.mjs shaders.d.ts README.md LICENSE; do
     test -s "node_modules/acdf/$file" || { echo "$file is not in the packed file" >&2; exit 1; }
 done
+size=$(stat -c %s node_modules/acdf/acdf.wasm)
+test "$size" -le 121000 || { echo "acdf.wasm has $size bytes, more than was reached before" >&2; exit 1; }
 
 "$make_sky" sky.pfm
 "$acdf" env sky.pfm --budget 16KiB --compress zlib -o sky.acdf --quiet

@@ -44,19 +44,25 @@ ACDF_FN double acdf_octahedral_position_on(const AcdfRange* range, double t, uin
     return acdf_clamp(at, low + border, (double)range->high - border) / (double)resolution;
 }
 
-/* The direction that what is left of the random numbers picks in a cell of probability p. */
-ACDF_FN AcdfDirectionSample acdf_grid_position(const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
-                                               double p) {
+/* The direction that what is left of the random numbers picks in a cell of probability p of an octahedral square.
+ */
+ACDF_FN AcdfDirectionSample acdf_octahedral_position(const AcdfGrid* grid, const AcdfRange range[2],
+                                                     const double u[2], double p) {
     AcdfDirectionSample out;
     double t[2], d[3];
     int i;
-    if (!acdf_grid_is_octahedral(grid)) return acdf_sphere_position(grid->columns, grid->rows, range, u, p);
     for (i = 0; i < 2; ++i) t[i] = acdf_tilt_sample(range[i].tilt, u[i]);
     acdf_octahedral_direction(acdf_octahedral_position_on(&range[0], t[0], grid->columns),
                               acdf_octahedral_position_on(&range[1], t[1], grid->rows), d);
     for (i = 0; i < 3; ++i) out.direction[i] = (float)d[i];
     out.pdf = acdf_grid_pdf(grid, range, t, p);
     return out;
+}
+/* The same of either grid. */
+ACDF_FN AcdfDirectionSample acdf_grid_position(const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
+                                               double p) {
+    if (acdf_grid_is_octahedral(grid)) return acdf_octahedral_position(grid, range, u, p);
+    return acdf_sphere_position(grid->columns, grid->rows, range, u, p);
 }
 
 /* The grid square of a direction, and where on the axes it lies (of lat-long grids axis 0 alone). Returns 0 for

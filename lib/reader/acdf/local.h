@@ -22,10 +22,12 @@ ACDF_INLINE AcdfDirectionSample acdf_local_rows_sample(const AcdfLocal* local, c
     AcdfVisibleRows in;
     const AcdfTopTile* tile;
     double share;
-    if (point->cells == 0) return acdf_rows_sample(local->rows_of_normals, tree, grid, &point->by.rows, u);
-    acdf_local_cells(local, point, &cells);
-    in = acdf_local_visible_rows(local, point, &cells);
-    tile = acdf_visible_sample_tile(&in, u, &share);
+    if (point->cells == 0) tile = acdf_rows_sample_tile(local->rows_of_normals, &point->by.rows, u, &share);
+    else {
+        acdf_local_cells(local, point, &cells);
+        in = acdf_local_visible_rows(local, point, &cells);
+        tile = acdf_visible_sample_tile(&in, u, &share);
+    }
     return acdf_rows_direction(tree, grid, tile, share, u);
 }
 
@@ -57,8 +59,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     }
 }
 
-/* Samples by the row of a position or through its portals, of which it sees at least one. The pdf is that of the
- * direction as it was rounded. */
+/* Samples through the portals of a position. The pdf is that of the direction as it was rounded. */
 ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_portal_sample(const AcdfLocal* local,
                                                                  const AcdfLocalPoint* point, double* u) {
     const AcdfVisiblePortals* portals = &point->place.portals;
@@ -66,8 +67,7 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_portal_sample(const AcdfLocal
     AcdfPortalEye eye;
     AcdfDirectionSample out;
     acdf_local_eye(local, point, &cells, &eye);
-    if (acdf_visible_portals_choose(portals, u)) acdf_visible_portals_sample(&eye, portals, u, out.direction);
-    else out = acdf_local_row_sample(local, point, u);
+    acdf_visible_portals_sample(&eye, portals, u, out.direction);
     out.pdf =
         acdf_visible_portals_pdf(&eye, portals, out.direction, acdf_local_row_pdf(local, point, out.direction));
     return out;
@@ -87,8 +87,12 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* lo
         out.pdf = acdf_local_light_pdf(local, point, out.direction);
     } else {
         if (local->cosine_share > 0.0) u[0] = (u[0] - local->cosine_share) / (1.0 - local->cosine_share);
-        out =
-            point->portals > 0 ? acdf_local_portal_sample(local, point, u) : acdf_local_row_sample(local, point, u);
+        if (point->portals > 0 && acdf_visible_portals_choose(&point->place.portals, u))
+            out = acdf_local_portal_sample(local, point, u);
+        else {
+            out = acdf_local_row_sample(local, point, u);
+            if (point->portals > 0) out.pdf = acdf_local_light_pdf(local, point, out.direction);
+        }
     }
     out.pdf = acdf_local_combined_pdf(local, point, out.direction, out.pdf);
     return acdf_returned(&out);

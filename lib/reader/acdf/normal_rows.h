@@ -222,19 +222,38 @@ ACDF_INLINE AcdfRowSpot acdf_rows_spot(const AcdfNormalRows* rows, const AcdfGri
     return spot;
 }
 
+/* The tile and the cell of a direction, in doubles: right at borders, too. */
+typedef struct AcdfRowFound {
+    int valid; /* 0: it is no direction */
+    uint32_t tile;
+    AcdfRowCell cell;
+} AcdfRowFound;
+
+ACDF_OUTLINE_ON_CPU AcdfRowFound acdf_rows_at_border(const AcdfNormalRows* rows, const AcdfHalvedTree* tree,
+                                                     const AcdfGrid* grid, const float direction[3]) {
+    AcdfRowFound out = {0, 0, {0.0, 0.0, {{{0, 0}}, {{0, 0}}}}};
+    uint32_t square[2];
+    double at[2];
+    if (!acdf_grid_square(grid, direction, square, at)) return out;
+    out.valid = 1;
+    out.tile = acdf_rows_find_tile(rows, square);
+    out.cell = acdf_rows_find_cell(tree, grid, acdf_row_tile(rows, out.tile), square);
+    return out;
+}
+
 /* The cell of a direction, and its tile: what floats found, where that is sure. 0: it is no direction. */
 ACDF_INLINE int acdf_rows_locate(const AcdfNormalRows* rows, const AcdfHalvedTree* tree, const AcdfGrid* grid,
                                  AcdfRowSpot* spot, const float direction[3], AcdfRowCell* cell) {
-    double at[2];
+    AcdfRowFound found;
     if (!spot->valid) return 0;
     *cell = acdf_rows_find_cell(tree, grid, acdf_row_tile(rows, spot->tile), spot->square);
     if (!spot->nearly || acdf_is_surely_in(spot->position, spot->error, cell->box[0].end[0], cell->box[0].end[1],
                                            cell->box[1].end[0], cell->box[1].end[1]))
         return 1;
-    if (!acdf_grid_square(grid, direction, spot->square, at)) return 0;
-    spot->tile = acdf_rows_find_tile(rows, spot->square);
-    *cell = acdf_rows_find_cell(tree, grid, acdf_row_tile(rows, spot->tile), spot->square);
-    return 1;
+    found = acdf_rows_at_border(rows, tree, grid, direction);
+    spot->tile = found.tile;
+    *cell = found.cell;
+    return found.valid;
 }
 
 /* The cell that u in [0, 1] lead to, and its probability; they are rescaled to [0, 1] in it. */

@@ -86,7 +86,7 @@ ACDF_INLINE AcdfDirectionSample acdf_environment_halved_sample(const AcdfEnviron
                                             acdf_halved_height(env->halved, range[1].high));
     {
         const AcdfGrid grid = acdf_environment_grid(env);
-        return acdf_grid_position(&grid, range, u, p);
+        return acdf_octahedral_position(&grid, range, u, p);
     }
 }
 

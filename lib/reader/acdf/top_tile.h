@@ -111,7 +111,7 @@ ACDF_INLINE void acdf_box_direction(const double* heights, const AcdfGrid* grid,
     AcdfRange range[2];
     int i;
     acdf_halved_ranges(box, range);
-    if (acdf_grid_is_octahedral(grid)) sample = acdf_grid_position(grid, range, u, 1.0);
+    if (acdf_grid_is_octahedral(grid)) sample = acdf_octahedral_position(grid, range, u, 1.0);
     else
         sample = acdf_sphere_position_between(grid->columns, range, u, 1.0, heights[range[1].low],
                                               heights[range[1].high]);

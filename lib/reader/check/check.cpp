@@ -6,10 +6,10 @@
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include "check/kinds.h"
 #include "check/signatures.h"
+#include "message.h"
 #endif
 
 #include <cstdarg>
-#include <cstdio>
 #include <cstring>
 
 namespace acdf {
@@ -27,7 +27,7 @@ void Report::add(int rule, std::uint64_t offset, const char* format, ...) noexce
     char detail[160];
     va_list arguments;
     va_start(arguments, format);
-    std::vsnprintf(detail, sizeof detail, format, arguments);
+    write_message(detail, sizeof detail, format, arguments);
     va_end(arguments);
     pass({rule, offset, find_rule(rule), detail});
 }

@@ -3,10 +3,10 @@
 #include <acdf/views.h>
 
 #include "memory.h"
+#include "message.h"
 #include "shader/tables/walk.h"
 
 #include <cstddef>
-#include <cstdio>
 #include <utility>
 
 namespace acdf {
@@ -16,7 +16,7 @@ namespace {
 Status none(const char* why) {
     Status status;
     status.code = ErrorCode::unsupported;
-    std::snprintf(status.message, sizeof status.message, "no tables for shaders: %s", why);
+    write_message(status.message, sizeof status.message, "no tables for shaders: %s", why);
     return status;
 }
 
