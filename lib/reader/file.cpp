@@ -22,11 +22,6 @@ namespace acdf {
 
 namespace {
 
-using u8 = std::uint8_t;
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-using ull = unsigned long long;
-
 // One line of whole characters: paths may hold anything, and the buffer may have cut the last sequence.
 void tidy(char* message) {
     std::size_t size = std::strlen(message), tail = size;
@@ -258,15 +253,15 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
 AcdfKind File::kind() const noexcept { return opened_->kind(); }
 const AcdfHeader& File::header() const noexcept { return *reinterpret_cast<const AcdfHeader*>(opened_->bytes); }
 const AcdfDescription& File::description() const noexcept { return *opened_->description; }
-const AcdfAxis& File::axis(std::uint32_t i) const noexcept { return opened_->axes[i]; }
-const AcdfBin& File::bin(std::uint32_t i) const noexcept { return opened_->bins[i]; }
+const AcdfAxis& File::axis(u32 i) const noexcept { return opened_->axes[i]; }
+const AcdfBin& File::bin(u32 i) const noexcept { return opened_->bins[i]; }
 bool File::has_bins() const noexcept { return opened_->bins != nullptr; }
-const std::uint8_t* File::tree() const noexcept { return opened_->tree; }
-std::uint32_t File::tree_units() const noexcept { return opened_->tree_units; }
-std::uint64_t File::size() const noexcept { return opened_->size; }
+const u8* File::tree() const noexcept { return opened_->tree; }
+u32 File::tree_units() const noexcept { return opened_->tree_units; }
+u64 File::size() const noexcept { return opened_->size; }
 const AcdfPartner* File::partner() const noexcept { return opened_->partner; }
-std::uint64_t File::table_bytes() const noexcept { return opened_->table_bytes; }
-std::uint32_t File::metadata_count() const noexcept { return opened_->metadata_count; }
+u64 File::table_bytes() const noexcept { return opened_->table_bytes; }
+u32 File::metadata_count() const noexcept { return opened_->metadata_count; }
 EnvironmentView File::environment() const noexcept { return EnvironmentView(opened_->environment); }
 
 void File::metadata(u32 i, Text& key, Text& value) const noexcept {

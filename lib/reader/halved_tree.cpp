@@ -15,10 +15,6 @@ namespace acdf {
 
 namespace {
 
-using u16 = std::uint16_t;
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-
 constexpr u32 most_bits = 7; // of the lookup grid's axes
 
 template <class T>

@@ -1,21 +1,21 @@
 // Makes what calls on a tree of halvings need, once, when a file is opened. Not installed.
 #pragma once
 
+#include "sources.h"
+
 #include <acdf/allocator.h>
 #include <acdf/halvings.h>
-
-#include <cstdint>
 
 namespace acdf {
 
 /// What a tree of halvings is made of.
 struct HalvedSource {
     const AcdfHalving* nodes;
-    std::uint32_t count;
-    const std::uint32_t* resolution; ///< of each sampled axis
-    std::uint32_t axes;              ///< how many are sampled
-    std::uint32_t parameterization;  ///< AcdfParameterization of the file
-    bool lookup;                     ///< whether a lookup grid is made, where the tree is of two axes
+    u32 count;
+    const u32* resolution; ///< of each sampled axis
+    u32 axes;              ///< how many are sampled
+    u32 parameterization;  ///< AcdfParameterization of the file
+    bool lookup;           ///< whether a lookup grid is made, where the tree is of two axes
 };
 
 /// The tree, in `block`, which the caller gives back; null where there is no memory. A lookup grid for which there

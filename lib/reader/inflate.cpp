@@ -8,10 +8,6 @@
 
 namespace acdf {
 
-using u8 = std::uint8_t;
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-
 #if ACDF_ZLIB
 
 u32 crc32_of(u32 seed, const u8* bytes, u64 size) noexcept {

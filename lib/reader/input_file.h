@@ -1,7 +1,7 @@
 // A regular file, opened to be read: all calls to the system are here.
 #pragma once
 
-#include <cstdint>
+#include "sources.h"
 
 namespace acdf {
 
@@ -16,9 +16,9 @@ public:
     /// `path` is UTF-8 on Windows, else bytes as the system takes them. Waits for no pipe.
     const char* open(const char* path) noexcept;
     /// How many bytes it has; wrong where it is a folder, a pipe or a device.
-    const char* measure(std::uint64_t& size) noexcept;
+    const char* measure(u64& size) noexcept;
     /// Reads up to `size` bytes; `done`: how many there were.
-    const char* read(void* out, std::uint64_t size, std::uint64_t& done) noexcept;
+    const char* read(void* out, u64 size, u64& done) noexcept;
 
 private:
 #if defined(_WIN32)

@@ -9,8 +9,6 @@
 namespace acdf {
 namespace {
 
-using u32 = std::uint32_t;
-
 // What is made of a file of so many bytes: not more.
 std::size_t most_table_bytes(const AcdfFile& file) {
     return 8 * static_cast<std::size_t>(file.size) + (std::size_t{1} << 20);

@@ -1,6 +1,8 @@
 // Goes through a tree of halvings and the squares of a grid over its axes. Not installed.
 #pragma once
 
+#include "sources.h"
+
 #include <acdf/halvings.h>
 #include <acdf/layout.h>
 
@@ -8,23 +10,21 @@ namespace acdf {
 
 /// The squares of an axis: `step` lies in square step * scale / 2^shift.
 struct Squares {
-    std::uint64_t scale;
-    std::uint32_t shift, count;
+    u64 scale;
+    u32 shift, count;
 
-    std::uint32_t of(std::uint32_t step) const { return static_cast<std::uint32_t>(step * scale >> shift); }
+    u32 of(u32 step) const { return static_cast<u32>(step * scale >> shift); }
 };
 
 /// 2^bits of an axis, by random numbers, and by positions, of scale position_scale.
-inline Squares squares_of_numbers(std::uint32_t bits) { return {1, 31 - bits, 1u << bits}; }
-inline Squares squares_of_positions(std::uint64_t scale, std::uint32_t bits) { return {scale, 32, 1u << bits}; }
-inline std::uint64_t position_scale(std::uint32_t resolution, std::uint32_t bits) {
-    return (std::uint64_t{1} << (32 + bits)) / resolution;
-}
+inline Squares squares_of_numbers(u32 bits) { return {1, 31 - bits, 1u << bits}; }
+inline Squares squares_of_positions(u64 scale, u32 bits) { return {scale, 32, 1u << bits}; }
+inline u64 position_scale(u32 resolution, u32 bits) { return (u64{1} << (32 + bits)) / resolution; }
 
 /// Finds the deepest node that holds each square.
 class LookupWalk {
 public:
-    LookupWalk(const AcdfHalving* nodes, std::uint32_t axes) : nodes_(nodes), axes_(axes) {}
+    LookupWalk(const AcdfHalving* nodes, u32 axes) : nodes_(nodes), axes_(axes) {}
 
     AcdfSpan steps[ACDF_MAX_AXES], box[ACDF_MAX_AXES]; ///< of the node that put() gets
     AcdfSpan squares[ACDF_MAX_AXES];                   ///< whose deepest node it is
@@ -32,11 +32,10 @@ public:
     /// Calls put(node) for each node that is the deepest one of a square, or more. `by_position`: squares are those
     /// of grid steps, not of random numbers.
     template <class Put>
-    void run(std::uint32_t root, const std::uint32_t* resolution, const Squares* grid, bool by_position,
-             const Put& put) {
+    void run(u32 root, const u32* resolution, const Squares* grid, bool by_position, const Put& put) {
         grid_ = grid;
         by_position_ = by_position;
-        for (std::uint32_t axis = 0; axis < axes_; ++axis) {
+        for (u32 axis = 0; axis < axes_; ++axis) {
             steps[axis] = {{0, ACDF_STEPS}};
             box[axis] = {{0, resolution[axis]}};
             squares[axis] = {{0, grid[axis].count}};
@@ -47,20 +46,20 @@ public:
 private:
     // At most 31 deep for each axis.
     template <class Put>
-    void visit(std::uint32_t node, const Put& put) {
-        for (std::uint32_t axis = 0; axis < axes_; ++axis)
+    void visit(u32 node, const Put& put) {
+        for (u32 axis = 0; axis < axes_; ++axis)
             if (squares[axis].end[0] >= squares[axis].end[1]) return;
         if (node == ACDF_LEAF) return put(node);
         const AcdfHalving halving = nodes_[node];
-        const std::uint32_t axis = halving.link & 7u, middle = acdf_span_middle(&box[axis]);
-        const std::uint32_t border = by_position_ ? middle : halving.threshold;
+        const u32 axis = halving.link & 7u, middle = acdf_span_middle(&box[axis]);
+        const u32 border = by_position_ ? middle : halving.threshold;
         const AcdfSpan own_steps = steps[axis], own_box = box[axis], all = squares[axis];
         // Squares that end below the border, and those that begin below it: one more, where it lies within one.
-        const std::uint32_t below = within(all, grid_[axis].of(border));
-        const std::uint32_t above = border > 0 ? within(all, grid_[axis].of(border - 1) + 1) : below;
+        const u32 below = within(all, grid_[axis].of(border));
+        const u32 above = border > 0 ? within(all, grid_[axis].of(border - 1) + 1) : below;
         squares[axis] = {{below, above}};
         if (below < above) put(node);
-        for (std::uint32_t upper = 0; upper < 2; ++upper) {
+        for (u32 upper = 0; upper < 2; ++upper) {
             steps[axis] = own_steps;
             box[axis] = own_box;
             steps[axis].end[1 - upper] = halving.threshold;
@@ -73,12 +72,12 @@ private:
         squares[axis] = all;
     }
 
-    static std::uint32_t within(const AcdfSpan& span, std::uint32_t square) {
+    static u32 within(const AcdfSpan& span, u32 square) {
         return square < span.end[0] ? span.end[0] : square > span.end[1] ? span.end[1] : square;
     }
 
     const AcdfHalving* nodes_;
-    std::uint32_t axes_;
+    u32 axes_;
     const Squares* grid_ = nullptr;
     bool by_position_ = false;
 };

@@ -2,15 +2,11 @@
 
 #include <acdf/elementary.h>
 
-#include <cstdint>
 #include <cstring>
 
 namespace acdf {
 
 namespace {
-
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
 
 class Writer {
 public:

@@ -1,6 +1,8 @@
 // Texts of errors: the part of printf that the reader needs. Not installed.
 #pragma once
 
+#include "sources.h"
+
 #include <cstdarg>
 #include <cstddef>
 
@@ -8,11 +10,11 @@ namespace acdf {
 
 /// Writes as much as `out` has room for, terminated: %s, %u, %d, %x, %llu, with a width in zeros (%08x), and %g and
 /// %.9g. The same text in every locale, without the streams of a C library.
-void write_message(char* out, std::size_t size, const char* format, std::va_list arguments) noexcept;
+ACDF_ONCE void write_message(char* out, std::size_t size, const char* format, std::va_list arguments) noexcept;
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
-void
+ACDF_ONCE void
 write_message(char* out, std::size_t size, const char* format, ...) noexcept;
 
 } // namespace acdf

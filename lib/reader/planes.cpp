@@ -11,10 +11,6 @@
 namespace acdf {
 namespace {
 
-using u8 = std::uint8_t;
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-
 constexpr u32 value_sizes[ACDF_PLANE_STREAMS] = ACDF_PLANE_VALUE_SIZES;
 
 void store_value(u8* at, u32 value, u32 size) {

@@ -10,10 +10,6 @@ namespace acdf {
 
 namespace {
 
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-using ull = unsigned long long;
-
 constexpr u32 max_columns = 1u << 16, max_rows = 1u << 28, max_views = 1u << 16;
 
 /// An axis as SPEC.md §11 has it.

@@ -21,9 +21,9 @@ void Report::pass(const Finding& finding) noexcept {
 }
 
 #ifdef ACDF_ENVIRONMENT_ONLY
-void Report::add(int rule, std::uint64_t offset) noexcept { pass({rule, offset}); }
+void Report::add(int rule, u64 offset) noexcept { pass({rule, offset}); }
 #else
-void Report::add(int rule, std::uint64_t offset, const char* format, ...) noexcept {
+void Report::add(int rule, u64 offset, const char* format, ...) noexcept {
     char detail[160];
     va_list arguments;
     va_start(arguments, format);
@@ -34,11 +34,6 @@ void Report::add(int rule, std::uint64_t offset, const char* format, ...) noexce
 #endif
 
 namespace {
-
-using u8 = std::uint8_t;
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-using ull = unsigned long long; // for printf
 
 constexpr u8 magic[ACDF_MAGIC_SIZE] = ACDF_MAGIC_BYTES;
 

@@ -1,6 +1,7 @@
 // Every check of a file, once: `File` stops at the first error, `acdf validate` reports all.
 #pragma once
 
+#include "sources.h"
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include "check/rules.h"
 #endif
@@ -14,19 +15,12 @@
 #include <cstring>
 #include <type_traits>
 
-// Functions that run once a file and have no long loops: what they take is room, not time.
-#if defined(__GNUC__)
-#define ACDF_ONCE __attribute__((cold))
-#else
-#define ACDF_ONCE
-#endif
-
 namespace acdf {
 
 /// A broken rule.
 struct Finding {
-    int number = 0;           ///< of the rule
-    std::uint64_t offset = 0; ///< byte in the file; for a compressed chunk that of its first stored byte
+    int number = 0; ///< of the rule
+    u64 offset = 0; ///< byte in the file; for a compressed chunk that of its first stored byte
 #ifndef ACDF_ENVIRONMENT_ONLY
     const Rule* rule = nullptr;
     const char* detail = ""; ///< what was found and, if it helps, what to do; valid during the call
@@ -37,7 +31,7 @@ struct Finding {
 using FindingSink = bool (*)(const Finding& finding, void* context);
 
 struct Verdict {
-    std::uint64_t errors = 0, warnings = 0;
+    u64 errors = 0, warnings = 0;
     bool valid() const noexcept { return errors == 0; }
 };
 
@@ -63,8 +57,8 @@ Verdict validate(const void* bytes, std::size_t size, Sink&& sink, const Limits&
 #endif
 
 /// A length in META, at any alignment.
-inline std::uint32_t load_u32(const std::uint8_t* bytes) noexcept {
-    std::uint32_t value;
+inline u32 load_u32(const u8* bytes) noexcept {
+    u32 value;
     std::memcpy(&value, bytes, sizeof value);
     return value;
 }
@@ -79,35 +73,35 @@ struct Parts {
     const AcdfDescription* description = nullptr;
     const AcdfAxis* axes = nullptr; ///< description->axis_count
     const AcdfBin* bins = nullptr;  ///< description->bin_count
-    const std::uint8_t* tree = nullptr;
-    std::uint32_t tree_units = 0;           ///< bins and tree: of curves alone
-    const AcdfPartner* partner = nullptr;   ///< null where the file is to be used alone
-    const std::uint8_t* metadata = nullptr; ///< the payload of META after its count; null where absent
-    std::uint32_t metadata_count = 0;
+    const u8* tree = nullptr;
+    u32 tree_units = 0;                   ///< bins and tree: of curves alone
+    const AcdfPartner* partner = nullptr; ///< null where the file is to be used alone
+    const u8* metadata = nullptr;         ///< the payload of META after its count; null where absent
+    u32 metadata_count = 0;
     AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV
     AcdfBlock halvings_block = {};   ///< that holds them, of `allocator`
     AcdfAllocator allocator = {};
-    std::uint32_t halving_count = 0;
+    u32 halving_count = 0;
     AcdfBlock inflated = {}; ///< of the inflated chunks, from take_block; the caller gives it back
 
 #ifndef ACDF_ENVIRONMENT_ONLY
-    const AcdfViews* views = nullptr;            ///< of a BRDF
-    const float* nodes = nullptr;                ///< views->theta_count
-    const AcdfLocalHeader* local = nullptr;      ///< of local environments
-    AcdfVisibilityTable visibility = {};         ///< of local environments; its header is null where absent
-    const AcdfMapsHeader* maps = nullptr;        ///< of an indexed environment
-    const double* coordinates = nullptr;         ///< of its maps
-    const AcdfMap* of_map = nullptr;             ///< maps->map_count
-    const std::uint8_t* map_splits = nullptr;    ///< a bit for each halving; then the codes of each map
-    const AcdfNormalsHeader* normals = nullptr;  ///< of a local environment on one tree of halvings
-    const std::uint8_t* normal_splits = nullptr; ///< a bit for each halving; then the codes of each row,
-    std::uint64_t normals_size = 0;              ///< of so many bytes
-    AcdfPortalTable portals = {};                ///< beside visibility cells; its header is null where absent
+    const AcdfViews* views = nullptr;           ///< of a BRDF
+    const float* nodes = nullptr;               ///< views->theta_count
+    const AcdfLocalHeader* local = nullptr;     ///< of local environments
+    AcdfVisibilityTable visibility = {};        ///< of local environments; its header is null where absent
+    const AcdfMapsHeader* maps = nullptr;       ///< of an indexed environment
+    const double* coordinates = nullptr;        ///< of its maps
+    const AcdfMap* of_map = nullptr;            ///< maps->map_count
+    const u8* map_splits = nullptr;             ///< a bit for each halving; then the codes of each map
+    const AcdfNormalsHeader* normals = nullptr; ///< of a local environment on one tree of halvings
+    const u8* normal_splits = nullptr;          ///< a bit for each halving; then the codes of each row,
+    u64 normals_size = 0;                       ///< of so many bytes
+    AcdfPortalTable portals = {};               ///< beside visibility cells; its header is null where absent
 #endif
 };
 
 /// The checks themselves, on bytes aligned to 8. `parts` is complete where the verdict has no errors.
-ACDF_ONCE Verdict check(const std::uint8_t* bytes, std::uint64_t size, const Limits& limits, FindingSink sink,
-                        void* context, Parts& parts, const AcdfAllocator& allocator = {}) noexcept;
+ACDF_ONCE Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink, void* context,
+                        Parts& parts, const AcdfAllocator& allocator = {}) noexcept;
 
 } // namespace acdf

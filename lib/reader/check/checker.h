@@ -16,9 +16,9 @@ public:
     __attribute__((noinline, cold))
 #endif
     void
-    add(int rule, std::uint64_t offset) noexcept;
+    add(int rule, u64 offset) noexcept;
     template <class... Details>
-    void add(int rule, std::uint64_t offset, const Details&...) noexcept {
+    void add(int rule, u64 offset, const Details&...) noexcept {
         add(rule, offset);
     }
 #else
@@ -26,7 +26,7 @@ public:
     __attribute__((format(printf, 4, 5)))
 #endif
     void
-    add(int rule, std::uint64_t offset, const char* format, ...) noexcept;
+    add(int rule, u64 offset, const char* format, ...) noexcept;
 #endif
 
     bool stopped() const noexcept { return stopped_; }
@@ -43,15 +43,13 @@ private:
 
 /// The bytes of one chunk, inflated if they were compressed. `data` is null where they cannot be read.
 struct Payload {
-    const std::uint8_t* data = nullptr;
-    std::uint64_t size = 0;
-    std::uint64_t file_offset = 0;
+    const u8* data = nullptr;
+    u64 size = 0;
+    u64 file_offset = 0;
     bool inflated = false;
 
     /// The byte of the file that stands for byte `position` of the payload.
-    std::uint64_t at(std::uint64_t position) const noexcept {
-        return inflated ? file_offset : file_offset + position;
-    }
+    u64 at(u64 position) const noexcept { return inflated ? file_offset : file_offset + position; }
 };
 
 enum KnownChunk {
@@ -74,12 +72,12 @@ struct Payloads {
     Payload of[known_chunks];
 };
 
-constexpr std::uint32_t most_steps = 0x7FFFFFFF; ///< of an axis (rule 5014)
+constexpr u32 most_steps = 0x7FFFFFFF; ///< of an axis (rule 5014)
 
-inline std::uint64_t round_up(std::uint64_t n, std::uint64_t to) noexcept { return (n + to - 1) / to * to; }
+inline u64 round_up(u64 n, u64 to) noexcept { return (n + to - 1) / to * to; }
 
 /// DESC. Sets parts.description and parts.axes if its length is right.
-ACDF_ONCE void check_description(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_description(const Payload& payload, u32 kind, Report& report, Parts& parts) noexcept;
 /// META. Sets parts.metadata if it is well-formed.
 ACDF_ONCE void check_metadata(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// HALV: one tree, or of tables, whose `bins` is BINS, one for each bin with a share; needs parts.description, and
@@ -91,6 +89,6 @@ ACDF_ONCE void check_environment_axes(const Payload& payload, Report& report, co
 ACDF_ONCE void check_environment(const Payload& description, const Payload& bins, Report& report,
                                  const Parts& parts) noexcept;
 /// COMP, where there is one; needs parts.description. Sets parts.partner.
-ACDF_ONCE void check_partner(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_partner(const Payload& payload, u32 kind, Report& report, Parts& parts) noexcept;
 
 } // namespace acdf

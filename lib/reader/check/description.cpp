@@ -9,11 +9,6 @@ namespace acdf {
 
 namespace {
 
-using u8 = std::uint8_t;
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-using ull = unsigned long long;
-
 constexpr u32 max_environment_resolution = 65536;
 constexpr u32 max_metadata_pairs = 1024; // so that comparing all keys stays linear in the bytes
 constexpr u32 max_key_bytes = 255;

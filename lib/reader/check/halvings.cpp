@@ -6,10 +6,6 @@ namespace acdf {
 
 namespace {
 
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-using ull = unsigned long long;
-
 // One tree, or one for each bin with a share.
 class HalvingsChecker {
 public:

@@ -8,11 +8,6 @@ namespace acdf {
 
 namespace {
 
-using u8 = std::uint8_t;
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-using ull = unsigned long long;
-
 constexpr u32 most_map_steps = 65536; // of an indexed axis
 
 // False where MAPS cannot be read by them.

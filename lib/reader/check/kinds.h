@@ -6,11 +6,10 @@
 namespace acdf {
 
 /// All that lies beside DESC and META, but HALV; needs parts.description.
-ACDF_ONCE void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Parts& parts) noexcept;
+ACDF_ONCE void check_kind(const Payloads& payloads, u32 kind, Report& report, Parts& parts) noexcept;
 
 /// BINS and TREE; needs parts.description. Sets parts.bins, parts.tree.
-void check_tree(const Payload& bins, const Payload& tree, std::uint32_t kind, Report& report,
-                Parts& parts) noexcept;
+void check_tree(const Payload& bins, const Payload& tree, u32 kind, Report& report, Parts& parts) noexcept;
 /// The same of local environments, and LOCL. Sets parts.local.
 ACDF_ONCE void check_local_kind(const Payload& description, const Payload& local, Report& report,
                                 Parts& parts) noexcept;

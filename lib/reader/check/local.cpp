@@ -7,10 +7,6 @@ namespace acdf {
 
 namespace {
 
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-using ull = unsigned long long;
-
 constexpr u32 max_subdivisions = 1024;
 
 bool named(const AcdfAxis& axis, const char* name) {

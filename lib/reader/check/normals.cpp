@@ -8,10 +8,6 @@ namespace acdf {
 
 namespace {
 
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-using ull = unsigned long long;
-
 bool check_normal_counts(const Payload& payload, const AcdfNormalsHeader& normals, Report& report,
                          const Parts& parts) {
     const bool right = normals.row_count > 0 && normals.row_count <= parts.description->bin_count &&

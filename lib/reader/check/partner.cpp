@@ -6,9 +6,6 @@
 namespace acdf {
 namespace {
 
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-
 bool is_share(float share) { return share > 0.0f && share <= 1.0f; }
 
 // What is wrong with what stands before the records; null if nothing.

@@ -7,11 +7,6 @@ namespace acdf {
 
 namespace {
 
-using u8 = std::uint8_t;
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-using ull = unsigned long long;
-
 u64 maps_at(const AcdfPortals& h) { return sizeof h + u64{h.portal_count} * sizeof(AcdfPortal); }
 u64 sums_at(const AcdfPortals& h) { return maps_at(h) + u64{h.map_count} * sizeof(AcdfPortalMap); }
 u64 corners_of(const AcdfPortals& h) { return (u64{h.size} + 1) * (u64{h.size} + 1); }

@@ -8,10 +8,9 @@ namespace acdf {
 /// Goes through the splits of the top for one row after the other, in preorder.
 class RowCodes {
 public:
-    RowCodes(const AcdfHalving* nodes, const std::uint8_t* splits, std::uint32_t code_bits)
+    RowCodes(const AcdfHalving* nodes, const u8* splits, u32 code_bits)
         : nodes_(nodes), splits_(splits), code_bits_(code_bits) {
-        for (std::uint32_t code = 0; code < 1u << code_bits; ++code)
-            share_[code] = acdf_halving_share(code, code_bits);
+        for (u32 code = 0; code < 1u << code_bits; ++code) share_[code] = acdf_halving_share(code, code_bits);
     }
 
     /// Takes the codes of a row from `bits`. Calls visit(before, lower) for each split: the steps of all tiles
@@ -19,15 +18,15 @@ public:
     /// wrong: `wrong` says which.
     template <class Visit>
     bool row(Bits& bits, const Visit& visit) {
-        std::uint32_t waiting = 0;
+        u32 waiting = 0;
         if (has_codes(0)) open_[waiting++] = {0, 0, ACDF_STEPS};
         while (waiting > 0) {
             const Open at = open_[--waiting];
-            std::uint32_t lower = 0;
+            u32 lower = 0;
             if (at.steps > 0 && !take(bits, at.steps, lower)) return false;
             visit(at.before, lower);
-            const std::uint32_t link = nodes_[at.node].link;
-            const std::uint32_t half[2] = {at.node + 1, at.node + (link >> 5)};
+            const u32 link = nodes_[at.node].link;
+            const u32 half[2] = {at.node + 1, at.node + (link >> 5)};
             if (!(link >> 4 & 1u) && has_codes(half[1]))
                 open_[waiting++] = {half[1], at.before + lower, at.steps - lower};
             if (!(link >> 3 & 1u) && has_codes(half[0])) open_[waiting++] = {half[0], at.before, lower};
@@ -35,21 +34,21 @@ public:
         return true;
     }
 
-    bool has_codes(std::uint32_t node) const { return splits_[node / 8] >> node % 8 & 1u; }
+    bool has_codes(u32 node) const { return splits_[node / 8] >> node % 8 & 1u; }
     const char* wrong = "";
 
 private:
     struct Open {
-        std::uint32_t node, before, steps;
+        u32 node, before, steps;
     };
 
-    bool take(Bits& bits, std::uint32_t steps, std::uint32_t& lower) {
+    bool take(Bits& bits, u32 steps, u32& lower) {
         if (!bits.has(code_bits_)) {
             wrong = "codes are missing";
             return false;
         }
-        const std::uint32_t last = (1u << code_bits_) - 1;
-        const std::uint32_t code = bits.take(code_bits_);
+        const u32 last = (1u << code_bits_) - 1;
+        const u32 code = bits.take(code_bits_);
         if (code != 0 && code != last && steps < 2) {
             wrong = "one step is divided";
             return false;
@@ -60,9 +59,9 @@ private:
     }
 
     const AcdfHalving* nodes_;
-    const std::uint8_t* splits_;
-    std::uint32_t code_bits_;
-    std::uint32_t share_[1u << ACDF_MOST_ROW_CODE_BITS];
+    const u8* splits_;
+    u32 code_bits_;
+    u32 share_[1u << ACDF_MOST_ROW_CODE_BITS];
     Open open_[most_open_halvings];
 };
 

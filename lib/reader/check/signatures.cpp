@@ -6,9 +6,6 @@ namespace acdf {
 
 namespace {
 
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-
 struct Signature {
     const char* bytes;
     std::size_t size;
@@ -43,7 +40,7 @@ constexpr Signature signatures[] = {
 
 } // namespace
 
-const char* what_is_it(const std::uint8_t* bytes, u64 size) noexcept {
+const char* what_is_it(const u8* bytes, u64 size) noexcept {
     for (const Signature& s : signatures)
         if (size >= s.size && std::memcmp(bytes, s.bytes, s.size) == 0) return s.text;
     u32 dims[3];

@@ -9,10 +9,6 @@ namespace acdf {
 
 namespace {
 
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-using ull = unsigned long long;
-
 // Sets parts.bins if BINS has its length and its shares say which bins have trees.
 void check_table_bins(const Payload& payload, Report& report, Parts& parts) {
     const u32 count = parts.description->bin_count;

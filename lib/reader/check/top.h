@@ -5,10 +5,10 @@
 
 namespace acdf {
 
-constexpr std::uint32_t most_open_halvings = 128; // nodes that wait: a level of each axis, and one
+constexpr u32 most_open_halvings = 128; // nodes that wait: a level of each axis, and one
 
 /// `bits` has one for each halving: 1 where rows have codes of their own. `count` halvings must, and each that is
 /// halved above one of them. False where that is not so, or bits follow that are not 0.
-bool check_top(Bits& bits, std::uint32_t count, Report& report, const Parts& parts) noexcept;
+bool check_top(Bits& bits, u32 count, Report& report, const Parts& parts) noexcept;
 
 } // namespace acdf

@@ -11,11 +11,6 @@ namespace acdf {
 
 namespace {
 
-using u8 = std::uint8_t;
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-using ull = unsigned long long;
-
 constexpr u32 unreached = 0xFFFFFFFF;
 
 // What is known of a curve, used twice with different meanings. Since there is at most one curve for every four
@@ -54,7 +49,7 @@ struct Tree {
     bool sampled(u32 axis) const {
         return axis < parts.description->axis_count && parts.axes[axis].role == ACDF_AXIS_SAMPLED;
     }
-    u32 unit(u32 at) const { return reinterpret_cast<const std::uint16_t*>(payload.data)[at]; }
+    u32 unit(u32 at) const { return reinterpret_cast<const u16*>(payload.data)[at]; }
     u64 at(u32 unit) const { return payload.at(u64{unit} * 2); }
     u64 at(const u8* byte) const { return payload.at(static_cast<u64>(byte - payload.data)); }
     bool starts_at(u64 unit) const { return unit < units && starts.at(static_cast<u32>(unit)); }
@@ -80,12 +75,17 @@ u32 segments_of(const Tree& tree, u32 unit) {
     return many > ACDF_CURVE_SHORT_SEGMENTS && many <= ACDF_MAX_SEGMENTS ? many : 0;
 }
 
+// Where the next curve is. Out of line: three passes decode all curves.
+ACDF_OUTLINE std::size_t decode(const Tree& tree, u32 unit, AcdfCurve& curve) {
+    return acdf_curve_decode(tree.data(), unit, &curve);
+}
+
 /// Calls `visit(unit, curve)` for each curve in file order.
 template <class Visit>
 void for_each_curve(const Tree& tree, const Report& report, Visit visit) {
     for (u32 unit = 0; unit < tree.units && !report.stopped();) {
         AcdfCurve curve;
-        const std::size_t next = acdf_curve_decode(tree.data(), unit, &curve);
+        const std::size_t next = decode(tree, unit, curve);
         visit(unit, curve);
         unit = static_cast<u32>(next);
     }
@@ -116,7 +116,7 @@ bool find_curves(const Tree& tree, u32& curves, Report& report) {
             return false;
         }
         AcdfCurve curve;
-        const std::size_t next = acdf_curve_decode(payload.data, unit, &curve);
+        const std::size_t next = decode(tree, unit, curve);
         if (next > units) {
             report.add(6002, at, "the curve at unit %u ends at unit %llu of %u", unit, static_cast<ull>(next),
                        units);

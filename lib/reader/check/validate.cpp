@@ -6,9 +6,6 @@
 
 namespace acdf {
 
-using u8 = std::uint8_t;
-using ull = unsigned long long; // for printf
-
 Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* context,
                  const Limits& limits) noexcept {
     const u8* data = static_cast<const u8*>(bytes);

@@ -7,11 +7,6 @@ namespace acdf {
 
 namespace {
 
-using u8 = std::uint8_t;
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-using ull = unsigned long long;
-
 u64 columns_at(const AcdfVisibility& header) {
     return sizeof header + u64{header.split_count} * sizeof(AcdfVisibilitySplit);
 }
@@ -20,7 +15,7 @@ u64 sets_at(const AcdfVisibility& header) {
 }
 // Rows begin where columns and their sets end: they need no alignment.
 u64 rows_at(const AcdfVisibility& header) {
-    return sets_at(header) + (header.further_sets > 0 ? u64{header.row_count} * sizeof(std::uint16_t) : 0);
+    return sets_at(header) + (header.further_sets > 0 ? u64{header.row_count} * sizeof(u16) : 0);
 }
 
 bool check_size(const Payload& payload, u32 top_splits, Report& report) {
@@ -112,7 +107,7 @@ bool check_columns(const Payload& payload, const AcdfVisibility& h, const AcdfCo
     return true;
 }
 
-bool check_sets(const Payload& payload, const AcdfVisibility& h, const std::uint16_t* set_of_row, Report& report) {
+bool check_sets(const Payload& payload, const AcdfVisibility& h, const u16* set_of_row, Report& report) {
     for (u32 row = 0; set_of_row && row < h.row_count; ++row) {
         if (set_of_row[row] <= h.further_sets) continue;
         report.add(7015, payload.at(sets_at(h) + u64{row} * sizeof *set_of_row), "row %u", row);
@@ -144,7 +139,7 @@ void check_visibility(const Payload& payload, Report& report, Parts& parts) {
     const auto* header = reinterpret_cast<const AcdfVisibility*>(payload.data);
     const auto* splits = reinterpret_cast<const AcdfVisibilitySplit*>(header + 1);
     const auto* columns = reinterpret_cast<const AcdfColumn*>(splits + header->split_count);
-    const auto* set_of_row = reinterpret_cast<const std::uint16_t*>(payload.data + sets_at(*header));
+    const auto* set_of_row = reinterpret_cast<const u16*>(payload.data + sets_at(*header));
     const AcdfVisibilityTable table{header, splits, columns, header->further_sets > 0 ? set_of_row : nullptr,
                                     payload.data + rows_at(*header)};
     check_bounds(payload, *header, report);

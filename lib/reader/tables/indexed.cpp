@@ -10,9 +10,6 @@ namespace acdf {
 
 namespace {
 
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-
 constexpr u32 most_levels = 64;
 
 u64 to_top_line(u64 words) { return (words + 15) / 16 * 16; }

@@ -8,9 +8,6 @@ namespace acdf {
 
 namespace {
 
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-
 constexpr u64 kOddsCodes = 256;
 
 u64 to_row_line(u64 words) { return (words + 15) / 16 * 16; }

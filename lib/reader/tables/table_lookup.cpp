@@ -10,9 +10,6 @@ namespace acdf {
 
 namespace {
 
-using u32 = std::uint32_t;
-using u64 = std::uint64_t;
-
 constexpr u32 nodes_a_square = 2; // at least
 constexpr u32 least_nodes = 16;   // of a bin that has grids
 
