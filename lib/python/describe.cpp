@@ -69,14 +69,8 @@ py::dict metadata_of(const AcdfFile* file) {
 /// What a file takes in memory: its bytes, what was inflated of them, and the tables made at load.
 std::uint64_t memory_of(const AcdfFile* file) {
     AcdfMove parts[ACDF_MAX_MOVES];
-    AcdfLocal local = {};
-    AcdfBrdf brdf = {};
-    const bool rows =
-        (acdf_local(file, &local) && local.rows_of_normals) || (acdf_brdf(file, &brdf) && brdf.rows_of_views);
-    std::uint64_t sum = acdf_size(file) + acdf_table_bytes(file);
-    const int tables = (acdf_table_bytes(file) > 0 ? 1 : 0) + (rows ? 1 : 0); // rows beside those of the tree
-    const int inflated = acdf_memory(file, parts) - tables;                   // the file first, tables last
-    for (int i = 1; i < inflated; ++i) sum += parts[i].bytes;
+    std::uint64_t sum = 0;
+    for (int i = acdf_memory(file, parts); i-- > 0;) sum += parts[i].bytes;
     return sum;
 }
 

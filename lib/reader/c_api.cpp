@@ -106,7 +106,7 @@ int acdf_memory(const AcdfFile* file, AcdfMove* moves) {
 #endif
 
 AcdfKind acdf_kind(const AcdfFile* file) { return file->kind(); }
-uint64_t acdf_table_bytes(const AcdfFile* file) { return file->table_bytes; }
+uint64_t acdf_table_bytes(const AcdfFile* file) { return file->table_bytes(); }
 uint64_t acdf_size(const AcdfFile* file) { return file->size; }
 const AcdfHeader* acdf_header(const AcdfFile* file) { return reinterpret_cast<const AcdfHeader*>(file->bytes); }
 const AcdfDescription* acdf_description(const AcdfFile* file) { return file->description; }

@@ -41,11 +41,11 @@ void fail_at(Status& status, int rule, u64 offset, const char* detail) {
     status.rule = rule;
     status.offset = offset;
 #ifdef ACDF_ENVIRONMENT_ONLY
-    write_message(status.message, sizeof status.message, "%s%srule %d of SPEC.md is broken at byte %llu", detail,
-                  *detail ? ": " : "", rule, static_cast<ull>(offset));
+    write_message(status.message, sizeof status.message, "%s%srule %u of SPEC.md is broken at byte %llu", detail,
+                  *detail ? ": " : "", static_cast<u32>(rule), static_cast<ull>(offset));
 #else
-    write_message(status.message, sizeof status.message, "%s (rule %d at byte %llu: %s)", detail, rule,
-                  static_cast<ull>(offset), find_rule(rule)->sentence);
+    write_message(status.message, sizeof status.message, "%s (rule %u at byte %llu: %s)", detail,
+                  static_cast<u32>(rule), static_cast<ull>(offset), find_rule(rule)->sentence);
 #endif
     tidy(status.message);
 }
@@ -115,17 +115,14 @@ bool make_halved(const Parts& parts, bool lookup, AcdfFile& file) noexcept {
         if (parts.axes[axis].role == ACDF_AXIS_SAMPLED) resolution[count++] = parts.axes[axis].resolution;
     const HalvedSource source = {
         parts.halvings, parts.halving_count, resolution, count, parts.description->parameterization, lookup};
-    AcdfHalvedTree* const tree = make_halved_tree(source, file.allocator, file.memory[2]);
-    file.environment.halved = tree;
-    if (tree) file.table_bytes = 4 * u64{tree->words};
-    return tree != nullptr;
+    file.environment.halved = make_halved_tree(source, file.allocator, file.memory[2]);
+    return file.environment.halved != nullptr;
 }
 
 #ifndef ACDF_ENVIRONMENT_ONLY
 bool make_rows(const Parts& parts, bool lookup, AcdfFile& file) noexcept {
     const double* heights = acdf_halved_heights(file.environment.halved);
     file.rows = make_normal_rows(parts, lookup, heights, file.allocator, file.memory[3]);
-    if (file.rows) file.table_bytes += 4 * u64{file.rows->words};
     return file.rows != nullptr;
 }
 #endif
@@ -164,13 +161,11 @@ bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
     if (file.kind() == ACDF_KIND_INDEXED) {
         file.indexed = make_indexed(parts, options.tables, options.allocator, file.memory[2]);
         if (!file.indexed.top) return fail(status, 1003, "%llu halvings", ull{parts.halving_count});
-        file.table_bytes = 4 * u64{file.indexed.top->words};
         return true;
     }
     if (file.kind() == ACDF_KIND_TABLE) {
         make_view(parts, options.tables, file);
         if (!file.memory[2].data) file.memory[2] = std::exchange(parts.halvings_block, {}); // the nodes alone
-        file.table_bytes = file.memory[2].bytes;
         return true;
     }
 #endif
@@ -260,7 +255,7 @@ const u8* File::tree() const noexcept { return opened_->tree; }
 u32 File::tree_units() const noexcept { return opened_->tree_units; }
 u64 File::size() const noexcept { return opened_->size; }
 const AcdfPartner* File::partner() const noexcept { return opened_->partner; }
-u64 File::table_bytes() const noexcept { return opened_->table_bytes; }
+u64 File::table_bytes() const noexcept { return opened_->table_bytes(); }
 u32 File::metadata_count() const noexcept { return opened_->metadata_count; }
 EnvironmentView File::environment() const noexcept { return EnvironmentView(opened_->environment); }
 

@@ -28,6 +28,7 @@ public:
         while (count > 0) put(digits[--count]);
     }
 
+#ifndef ACDF_ENVIRONMENT_ONLY
     // Without zeros at the end; in powers of ten where it is below 1e-4 or has more digits before the point.
     void put(double x, int digits) {
         u64 bits;
@@ -56,6 +57,7 @@ public:
         put(power < 0 ? "e-" : "e+");
         put(static_cast<u64>(power < 0 ? -power : power), 10, 2);
     }
+#endif
 
 private:
     char *out_, *last_;
@@ -76,12 +78,10 @@ void write_message(char* out, std::size_t size, const char* format, std::va_list
             else if (*format != '.') width = 10 * width + (*format - '0');
         }
         if (*format == 's') writer.put(va_arg(arguments, const char*));
+#ifndef ACDF_ENVIRONMENT_ONLY
         else if (*format == 'g') writer.put(va_arg(arguments, double), width ? width : 6);
-        else if (*format == 'd') {
-            const int number = va_arg(arguments, int);
-            if (number < 0) writer.put('-');
-            writer.put(number < 0 ? 0u - static_cast<u32>(number) : static_cast<u32>(number), 10, width);
-        } else {
+#endif
+        else {
             const u64 number = longs ? va_arg(arguments, unsigned long long) : va_arg(arguments, u32);
             writer.put(number, *format == 'x' ? 16 : 10, width);
         }

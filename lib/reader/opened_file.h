@@ -16,7 +16,6 @@ struct AcdfFile {
     const AcdfPartner* partner;
     const std::uint8_t* metadata;
     std::uint32_t metadata_count;
-    std::uint64_t table_bytes; ///< of the runtime tables
     AcdfEnvironment environment;
 #ifndef ACDF_ENVIRONMENT_ONLY
     AcdfLocal local;
@@ -29,6 +28,7 @@ struct AcdfFile {
     AcdfBlock own;           ///< where this lies
     AcdfBlock memory[4];     ///< the file's bytes; inflated chunks; runtime tables; those of rows of halvings
 
+    std::uint64_t table_bytes() const { return std::uint64_t{memory[2].bytes} + memory[3].bytes; }
     AcdfKind kind() const { return static_cast<AcdfKind>(reinterpret_cast<const AcdfHeader*>(bytes)->kind); }
 };
 

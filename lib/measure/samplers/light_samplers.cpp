@@ -223,12 +223,8 @@ private:
 
 std::uint64_t memory_of(const File& file) {
     AcdfMove parts[ACDF_MAX_MOVES];
-    const AcdfNormalRows* rows = file.local().data().rows_of_normals;
-    if (!rows) rows = file.brdf().data().rows_of_views;
-    std::uint64_t sum = file.size() + file.table_bytes();
-    const int tables = (file.table_bytes() > 0 ? 1 : 0) + (rows ? 1 : 0); // rows beside those of the tree
-    const int inflated = file.memory(parts) - tables;                     // the file first, tables last
-    for (int i = 1; i < inflated; ++i) sum += parts[i].bytes;
+    std::uint64_t sum = 0;
+    for (int i = file.memory(parts); i-- > 0;) sum += parts[i].bytes;
     return sum;
 }
 

@@ -1,4 +1,4 @@
-/* The words of acdf/atan_float.h and of the headers of shaders, which are one text for C, C++, CUDA, OpenCL
+/* The words of acdf/angle_float.h and of the headers of shaders, which are one text for C, C++, CUDA, OpenCL
  * C, GLSL, HLSL and WGSL. Here they are C; lib/shader has the other dialects.
  *
  * ACDF_LET is a constant and ACDF_VAR a variable of a function, ACDF_FN1 to ACDF_FN5 begin functions of so many

@@ -10,12 +10,25 @@ namespace acdf {
 
 using DirectionSample = AcdfDirectionSample;
 
-/// A probability density over the sphere. A few words by value; valid while its File (and, for
-/// `from_memory`, the bytes) lives. All functions are const, thread-safe, allocate and throw nothing.
-class EnvironmentView {
+/// What a renderer holds of an open file: a few words by value, valid while its File (and, for `from_memory`, the
+/// bytes) lives. All functions of views are const, thread-safe, allocate and throw nothing.
+template <class Data>
+class ViewOf {
 public:
-    EnvironmentView() noexcept = default;
-    ACDF_METHOD explicit EnvironmentView(const AcdfEnvironment& data) noexcept : data_(data) {}
+    ViewOf() noexcept = default;
+    ACDF_METHOD explicit ViewOf(const Data& data) noexcept : data_(data) {}
+
+    /// The plain data, for the headers in C: in another language or on a GPU.
+    ACDF_METHOD const Data& data() const noexcept { return data_; }
+
+protected:
+    Data data_ = {};
+};
+
+/// A probability density over the sphere.
+class EnvironmentView : public ViewOf<AcdfEnvironment> {
+public:
+    using ViewOf<AcdfEnvironment>::ViewOf;
     ACDF_METHOD bool empty() const noexcept { return data_.columns == 0; }
 
     /// Samples a direction; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite, > 0.
@@ -36,11 +49,6 @@ public:
     ACDF_METHOD bool requires_mis() const noexcept { return data_.partner != nullptr; }
     /// Of the samples of both, in (0, 1]: how many to take from this view; 1 where it is to be used alone.
     ACDF_METHOD float recommended_light_share() const noexcept { return acdf_partner_share(data_.partner); }
-    /// The plain data, for acdf/sample.h in another language or on a GPU.
-    ACDF_METHOD const AcdfEnvironment& data() const noexcept { return data_; }
-
-private:
-    AcdfEnvironment data_ = {};
 };
 
 } // namespace acdf

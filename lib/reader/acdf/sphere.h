@@ -2,7 +2,7 @@
 #ifndef ACDF_SPHERE_H
 #define ACDF_SPHERE_H
 
-#include <acdf/atan_float.h>
+#include <acdf/angle_float.h>
 #include <acdf/layout.h>
 #include <acdf/range.h>
 

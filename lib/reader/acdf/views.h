@@ -17,12 +17,10 @@
 namespace acdf {
 
 /// For each normal a probability density over the sphere that follows the light above its horizon, times the
-/// cosine. A few words by value; valid while its File lives. All functions are const, thread-safe, allocate and
-/// throw nothing. Normals are of any length > 0, in the frame of directions.
-class LocalEnvironmentView {
+/// cosine. Normals are of any length > 0, in the frame of directions.
+class LocalEnvironmentView : public ViewOf<AcdfLocal> {
 public:
-    LocalEnvironmentView() noexcept = default;
-    ACDF_METHOD explicit LocalEnvironmentView(const AcdfLocal& data) noexcept : data_(data) {}
+    using ViewOf<AcdfLocal>::ViewOf;
     ACDF_METHOD bool empty() const noexcept { return data_.environment.columns == 0; }
 
     /// Samples a direction for a normal; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite and > 0.
@@ -81,21 +79,14 @@ public:
     ACDF_METHOD bool stored(const float normal[3]) const noexcept { return acdf_local_stored(&data_, normal) != 0; }
     /// The pdf of the whole environment, whatever the normal.
     ACDF_METHOD EnvironmentView environment() const noexcept { return EnvironmentView(data_.environment); }
-    /// The plain data, for acdf/local.h in another language or on a GPU.
-    ACDF_METHOD const AcdfLocal& data() const noexcept { return data_; }
-
-private:
-    AcdfLocal data_ = {};
 };
 
 /// For each view a probability density over the directions of light that a surface reflects to it, times the
-/// cosine. A few words by value; valid while its File lives. All functions are const, thread-safe, allocate and
-/// throw nothing. wo (towards the viewer) and wi (towards the light) are unit vectors in the surface's frame, z its
+/// cosine. wo (towards the viewer) and wi (towards the light) are unit vectors in the surface's frame, z its
 /// normal.
-class BrdfView {
+class BrdfView : public ViewOf<AcdfBrdf> {
 public:
-    BrdfView() noexcept = default;
-    ACDF_METHOD explicit BrdfView(const AcdfBrdf& data) noexcept : data_(data) {}
+    using ViewOf<AcdfBrdf>::ViewOf;
     ACDF_METHOD bool empty() const noexcept { return data_.columns == 0; }
 
     /// Samples wi for wo; u0 (azimuth of the half-vector) and u1 (its elevation) in [0, 1]. pdf in sr^-1 of wi,
@@ -117,21 +108,14 @@ public:
     /// Share of light that is reflected to wo, about: stored views are interpolated. To choose between lobes or
     /// layers.
     ACDF_METHOD double albedo(const float wo[3]) const noexcept { return acdf_brdf_albedo(&data_, wo); }
-    /// The plain data, for acdf/brdf.h in another language or on a GPU.
-    ACDF_METHOD const AcdfBrdf& data() const noexcept { return data_; }
-
-private:
-    AcdfBrdf data_ = {};
 };
 
-/// A probability density over the sampled axes of a table, one for each bin of its indexed axes. A few words by
-/// value; valid while its File lives. All functions are const, thread-safe, allocate and throw nothing.
-/// `index` has one number a indexed axis, in [0, resolution), and may be null where there is none; u and x have one
-/// number a sampled axis.
-class TableView {
+/// A probability density over the sampled axes of a table, one for each bin of its indexed axes. `index` has
+/// one number an indexed axis, in [0, resolution), and may be null where there is none; u and x have one number a
+/// sampled axis.
+class TableView : public ViewOf<AcdfTable> {
 public:
-    TableView() noexcept = default;
-    ACDF_METHOD explicit TableView(const AcdfTable& data) noexcept : data_(data) {}
+    using ViewOf<AcdfTable>::ViewOf;
     ACDF_METHOD bool empty() const noexcept { return data_.axis_count == 0; }
 
     /// How many axes are chosen by `index`, and how many are sampled.
@@ -171,19 +155,13 @@ public:
         const AcdfBin* bin = acdf_table_bin(&data_, index);
         return bin ? static_cast<double>(bin->share) : 0.0;
     }
-    /// The plain data, for acdf/table.h in another language or on a GPU.
-    ACDF_METHOD const AcdfTable& data() const noexcept { return data_; }
-
-private:
-    AcdfTable data_ = {};
 };
 
 /// An environment at some coordinates of an IndexedEnvironment: up to eight of its maps, mixed. Half a KiB by
-/// value; valid while the File lives. All functions are const, thread-safe, allocate and throw nothing.
-class MixedEnvironment {
+/// value.
+class MixedEnvironment : public ViewOf<AcdfMixed> {
 public:
-    MixedEnvironment() noexcept = default;
-    ACDF_METHOD explicit MixedEnvironment(const AcdfMixed& data) noexcept : data_(data) {}
+    using ViewOf<AcdfMixed>::ViewOf;
     ACDF_METHOD bool empty() const noexcept { return data_.top == nullptr; }
 
     /// Samples a direction; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite, > 0.
@@ -202,19 +180,12 @@ public:
     ACDF_METHOD double total() const noexcept { return data_.total; }
     /// The share of samples in the cone of the sun; 0 where there is none.
     ACDF_METHOD double sun_share() const noexcept { return data_.sun_share; }
-    /// The plain data, for acdf/indexed.h in another language or on a GPU.
-    ACDF_METHOD const AcdfMixed& data() const noexcept { return data_; }
-
-private:
-    AcdfMixed data_ = {};
 };
 
-/// Environments along one to three axes, such as the hours of a day. A few words by value; valid while its File
-/// lives.
-class IndexedEnvironment {
+/// Environments along one to three axes, such as the hours of a day.
+class IndexedEnvironment : public ViewOf<AcdfIndexed> {
 public:
-    IndexedEnvironment() noexcept = default;
-    ACDF_METHOD explicit IndexedEnvironment(const AcdfIndexed& data) noexcept : data_(data) {}
+    using ViewOf<AcdfIndexed>::ViewOf;
     ACDF_METHOD bool empty() const noexcept { return data_.columns == 0; }
 
     /// How many axes there are.
@@ -231,11 +202,6 @@ public:
         const double coordinates[3] = {first, second, third};
         return at(coordinates);
     }
-    /// The plain data, for acdf/indexed.h in another language or on a GPU.
-    ACDF_METHOD const AcdfIndexed& data() const noexcept { return data_; }
-
-private:
-    AcdfIndexed data_ = {};
 };
 
 } // namespace acdf

@@ -12,31 +12,21 @@ namespace {
 
 constexpr u32 max_columns = 1u << 16, max_rows = 1u << 28, max_views = 1u << 16;
 
-/// An axis as SPEC.md §11 has it.
-struct Wanted {
-    const char* name;
-    u32 role;
-    double low, high;
-    u32 most;
+constexpr WantedAxis wanted[] = {
+    // SPEC.md §11
+    {"phi_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, -ACDF_PI, ACDF_PI, max_columns},
+    {"cos_theta_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, 1.0, 0.0, max_rows},
+    {"theta_o", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 0.0, 0.5 * ACDF_PI, max_views},
+    {"phi_o", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, -ACDF_PI, ACDF_PI, max_views},
 };
 
-constexpr Wanted wanted[] = {
-    {"phi_h", ACDF_AXIS_SAMPLED, -ACDF_PI, ACDF_PI, max_columns},
-    {"cos_theta_h", ACDF_AXIS_SAMPLED, 1.0, 0.0, max_rows},
-    {"theta_o", ACDF_AXIS_INDEXED, 0.0, 0.5 * ACDF_PI, max_views},
-    {"phi_o", ACDF_AXIS_INDEXED, -ACDF_PI, ACDF_PI, max_views},
-};
-
-const char* axis_fault(const AcdfAxis& axis, u32 i, bool halved) {
-    const Wanted& w = wanted[i];
-    const bool half = i == 0 && axis.low == 0.0; // mirrored
-    if (std::strncmp(reinterpret_cast<const char*>(axis.name), w.name, sizeof axis.name) != 0) return "name";
-    if (axis.role != w.role) return "role";
-    const bool rows = halved && i == 1; // of half-vectors
-    if (axis.measure != (rows ? u32{ACDF_MEASURE_HALF} : u32{ACDF_MEASURE_LINEAR})) return "measure";
-    if (rows && axis.resolution != ACDF_HALF_ROWS) return "resolution";
-    if ((!half && axis.low != w.low) || axis.high != w.high) return "range";
-    return axis.resolution > w.most ? "resolution" : nullptr;
+const char* brdf_axis_fault(const AcdfAxis& axis, u32 i, bool halved) {
+    WantedAxis own = wanted[i];
+    if (i == 0 && axis.low == 0.0) own.low = 0.0; // mirrored
+    const bool rows = halved && i == 1;           // of half-vectors
+    if (rows) own.measure = ACDF_MEASURE_HALF;
+    const char* fault = axis_fault(axis, own);
+    return !fault && rows && axis.resolution != ACDF_HALF_ROWS ? "resolution" : fault;
 }
 
 void check_brdf_axes(const Payload& payload, bool halved, Report& report, const Parts& parts) {
@@ -46,12 +36,9 @@ void check_brdf_axes(const Payload& payload, bool halved, Report& report, const 
         return;
     }
     for (u32 i = 0; i < 4; ++i)
-        if (const char* fault = axis_fault(parts.axes[i], i, halved))
+        if (const char* fault = brdf_axis_fault(parts.axes[i], i, halved))
             report.add(8001, payload.at(sizeof d + i * sizeof(AcdfAxis)), "axis %u: the %s differs", i, fault);
-    const u64 bins = u64{parts.axes[2].resolution} * parts.axes[3].resolution;
-    if (bins != d.bin_count)
-        report.add(8002, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins, its axes make %llu",
-                   d.bin_count, static_cast<ull>(bins));
+    check_bin_count(payload, 8002, u64{parts.axes[2].resolution} * parts.axes[3].resolution, report, parts);
     for (u32 i = 0; parts.bins && i < d.bin_count; ++i)
         if (parts.bins[i].root == ACDF_NO_ROOT) report.add(8006, payload.at(0), "bin %u is not stored", i);
 }

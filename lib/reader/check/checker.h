@@ -84,6 +84,16 @@ ACDF_ONCE void check_metadata(const Payload& payload, Report& report, Parts& par
 /// parts.bins of tables. Sets parts.halvings.
 void check_halvings(const Payload& payload, const Payload* bins, Report& report, const AcdfAllocator& allocator,
                     Parts& parts) noexcept;
+/// What an axis must be.
+struct WantedAxis {
+    const char* name;
+    u32 role, measure;
+    double low, high;
+    u32 most; ///< steps
+};
+/// What of an axis differs; null: nothing.
+ACDF_ONCE const char* axis_fault(const AcdfAxis& axis, const WantedAxis& wanted) noexcept;
+
 /// What the kind asks of axes and bins; needs parts.description. Axes 0 and 1 must be those of an environment.
 ACDF_ONCE void check_environment_axes(const Payload& payload, Report& report, const Parts& parts) noexcept;
 ACDF_ONCE void check_environment(const Payload& description, const Payload& bins, Report& report,

@@ -87,17 +87,12 @@ void check_fields(const Payload& payload, const AcdfDescription& d, u32 kind, Re
         report.add(5010, payload.at(offsetof(AcdfDescription, total)), "it is %g", d.total);
 }
 
-// What an axis of an environment must be, beside its resolution.
-struct EnvironmentAxis {
-    u8 name[16];
-    u32 measure;
-    double low, high;
-};
-
-constexpr EnvironmentAxis latlong_axes[2] = {{{'p', 'h', 'i'}, ACDF_MEASURE_LINEAR, ACDF_PI, -ACDF_PI},
-                                             {{'t', 'h', 'e', 't', 'a'}, ACDF_MEASURE_COSINE, 0.0, ACDF_PI}};
-constexpr EnvironmentAxis octahedral_axes[2] = {{{'u'}, ACDF_MEASURE_LINEAR, 0.0, 1.0},
-                                                {{'v'}, ACDF_MEASURE_LINEAR, 0.0, 1.0}};
+constexpr WantedAxis latlong_axes[2] = {
+    {"phi", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, ACDF_PI, -ACDF_PI, max_environment_resolution},
+    {"theta", ACDF_AXIS_SAMPLED, ACDF_MEASURE_COSINE, 0.0, ACDF_PI, max_environment_resolution}};
+constexpr WantedAxis octahedral_axes[2] = {
+    {"u", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, 0.0, 1.0, max_environment_resolution},
+    {"v", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, 0.0, 1.0, max_environment_resolution}};
 
 // ---- metadata -------------------------------------------------------------------------------------------
 
@@ -176,21 +171,20 @@ void check_metadata(const Payload& payload, Report& report, Parts& parts) noexce
     parts.metadata_count = count;
 }
 
+const char* axis_fault(const AcdfAxis& axis, const WantedAxis& wanted) noexcept {
+    if (std::strncmp(reinterpret_cast<const char*>(axis.name), wanted.name, sizeof axis.name) != 0) return "name";
+    if (axis.role != wanted.role) return "role";
+    if (axis.measure != wanted.measure) return "measure";
+    if (axis.low != wanted.low || axis.high != wanted.high) return "range";
+    return axis.resolution > wanted.most ? "resolution" : nullptr;
+}
+
 void check_environment_axes(const Payload& payload, Report& report, const Parts& parts) noexcept {
     const bool octahedral = parts.description->parameterization == ACDF_PARAM_OCTAHEDRAL;
-    const EnvironmentAxis* expected = octahedral ? octahedral_axes : latlong_axes;
-    for (u32 i = 0; i < 2; ++i) {
-        const AcdfAxis& axis = parts.axes[i];
-        const char* fault = nullptr;
-        if (std::memcmp(axis.name, expected[i].name, sizeof axis.name) != 0) fault = "name";
-        else if (axis.role != ACDF_AXIS_SAMPLED) fault = "role";
-        else if (axis.measure != expected[i].measure) fault = "measure";
-        else if (axis.low != expected[i].low || axis.high != expected[i].high) fault = "range";
-        else if (axis.resolution > max_environment_resolution) fault = "resolution";
-        if (fault)
-            report.add(7001, payload.at(sizeof(AcdfDescription) + i * sizeof axis), "axis %u: the %s differs", i,
-                       fault);
-    }
+    for (u32 i = 0; i < 2; ++i)
+        if (const char* fault = axis_fault(parts.axes[i], (octahedral ? octahedral_axes : latlong_axes)[i]))
+            report.add(7001, payload.at(sizeof(AcdfDescription) + i * sizeof(AcdfAxis)), "axis %u: the %s differs",
+                       i, fault);
 }
 
 void check_environment(const Payload& payload, const Payload& bins, Report& report, const Parts& parts) noexcept {

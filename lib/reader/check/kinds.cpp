@@ -1,6 +1,8 @@
 // What kinds ask of files that have curves.
 #include "check/kinds.h"
 
+#include <cmath>
+
 namespace acdf {
 
 namespace {
@@ -12,6 +14,30 @@ void check_local(const Payloads& payloads, Report& report, Parts& parts) {
 }
 
 } // namespace
+
+bool check_bins(const Payload& payload, Report& report, Parts& parts) noexcept {
+    const u32 count = parts.description->bin_count;
+    if (payload.size != u64{count} * sizeof(AcdfBin)) {
+        report.add(4004, payload.at(0), "BINS has %llu bytes for %u bins", static_cast<ull>(payload.size), count);
+        return false;
+    }
+    parts.bins = reinterpret_cast<const AcdfBin*>(payload.data);
+    bool right = true;
+    for (u32 i = 0; i < count && !report.stopped(); ++i) {
+        const float share = parts.bins[i].share;
+        if (share >= 0.0f && std::isfinite(share)) continue;
+        right = false;
+        report.add(6017, payload.at(i * sizeof(AcdfBin) + offsetof(AcdfBin, share)), "bin %u: it is %g", i,
+                   static_cast<double>(share));
+    }
+    return right;
+}
+
+void check_bin_count(const Payload& payload, int rule, u64 bins, Report& report, const Parts& parts) noexcept {
+    if (bins != parts.description->bin_count)
+        report.add(rule, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins, its axes make %llu",
+                   parts.description->bin_count, static_cast<ull>(bins));
+}
 
 void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Parts& parts) noexcept {
     const Payload &description = payloads.of[chunk_description], &bins = payloads.of[chunk_bins];

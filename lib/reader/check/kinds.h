@@ -8,6 +8,11 @@ namespace acdf {
 /// All that lies beside DESC and META, but HALV; needs parts.description.
 ACDF_ONCE void check_kind(const Payloads& payloads, u32 kind, Report& report, Parts& parts) noexcept;
 
+/// BINS; needs parts.description. Sets parts.bins if its length is right; true: its shares are, too.
+ACDF_ONCE bool check_bins(const Payload& payload, Report& report, Parts& parts) noexcept;
+/// Whether there are as many bins as the indexed axes make.
+ACDF_ONCE void check_bin_count(const Payload& payload, int rule, u64 bins, Report& report,
+                               const Parts& parts) noexcept;
 /// BINS and TREE; needs parts.description. Sets parts.bins, parts.tree.
 void check_tree(const Payload& bins, const Payload& tree, u32 kind, Report& report, Parts& parts) noexcept;
 /// The same of local environments, and LOCL. Sets parts.local.

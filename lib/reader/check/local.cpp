@@ -9,28 +9,20 @@ namespace {
 
 constexpr u32 max_subdivisions = 1024;
 
-bool named(const AcdfAxis& axis, const char* name) {
-    return std::strncmp(reinterpret_cast<const char*>(axis.name), name, sizeof axis.name) == 0;
-}
-
 // An octahedron's corners: 4 n^2 + 2 of them.
 const char* octahedral_fault(const AcdfAxis& axis) {
-    if (!named(axis, "normal")) return "name";
-    if (axis.role != ACDF_AXIS_INDEXED) return "role";
-    if (axis.measure != ACDF_MEASURE_LINEAR) return "measure";
-    if (axis.low != 0.0 || axis.high != axis.resolution) return "range";
+    const WantedAxis wanted = {"normal", ACDF_AXIS_INDEXED,       ACDF_MEASURE_LINEAR,
+                               0.0,      double(axis.resolution), axis.resolution};
+    if (const char* fault = axis_fault(axis, wanted)) return fault;
     for (u32 n = 1; n <= max_subdivisions; ++n)
         if (axis.resolution == 4 * n * n + 2) return nullptr;
     return "resolution";
 }
 
-const char* grid_fault(const AcdfAxis& axis, bool theta) {
-    if (!named(axis, theta ? "normal theta" : "normal phi")) return "name";
-    if (axis.role != ACDF_AXIS_INDEXED) return "role";
-    if (axis.measure != ACDF_MEASURE_LINEAR) return "measure";
-    if (axis.low != (theta ? 0.0 : ACDF_PI) || axis.high != (theta ? ACDF_PI : -ACDF_PI)) return "range";
-    return axis.resolution > 65536 ? "resolution" : nullptr;
-}
+constexpr WantedAxis grid_axes[2] = {
+    {"normal theta", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 0.0, ACDF_PI, 65536},
+    {"normal phi", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, ACDF_PI, -ACDF_PI, 65536},
+};
 
 void check_local_axes(const Payload& payload, Report& report, const Parts& parts) {
     const AcdfDescription& d = *parts.description;
@@ -42,13 +34,11 @@ void check_local_axes(const Payload& payload, Report& report, const Parts& parts
     u64 bins = 1;
     for (u32 i = 2; i < d.axis_count; ++i) {
         const AcdfAxis& axis = parts.axes[i];
-        const char* fault = d.axis_count == 3 ? octahedral_fault(axis) : grid_fault(axis, i == 2);
+        const char* fault = d.axis_count == 3 ? octahedral_fault(axis) : axis_fault(axis, grid_axes[i - 2]);
         if (fault) report.add(7003, payload.at(sizeof d + i * sizeof axis), "axis %u: the %s differs", i, fault);
         bins *= axis.resolution;
     }
-    if (bins != d.bin_count && d.bin_count != 0) // 0: rule 5007
-        report.add(7004, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins, its axes make %llu",
-                   d.bin_count, static_cast<ull>(bins));
+    if (d.bin_count != 0) check_bin_count(payload, 7004, bins, report, parts); // 0: rule 5007
 }
 
 } // namespace

@@ -34,18 +34,10 @@ void check_normal_codes(const Payload& payload, u64 begin, const AcdfNormalsHead
 }
 
 void check_normal_bins(const Payload& payload, u32 rows, Report& report, Parts& parts) {
-    const u32 count = parts.description->bin_count;
-    if (payload.size != u64{count} * sizeof(AcdfBin))
-        return report.add(4004, payload.at(0), "BINS has %llu bytes", static_cast<ull>(payload.size));
-    const auto* bins = reinterpret_cast<const AcdfBin*>(payload.data);
-    for (u32 b = 0; b < count && !report.stopped(); ++b) {
-        const u64 at = payload.at(b * sizeof(AcdfBin));
-        if (bins[b].root != ACDF_NO_ROOT && bins[b].root >= rows)
-            report.add(6026, at, "bin %u: row %u of %u", b, bins[b].root, rows);
-        if (!(bins[b].share >= 0.0f && std::isfinite(bins[b].share)))
-            report.add(6017, at, "bin %u: %g", b, static_cast<double>(bins[b].share));
-    }
-    parts.bins = bins;
+    check_bins(payload, report, parts);
+    for (u32 b = 0; parts.bins && b < parts.description->bin_count && !report.stopped(); ++b)
+        if (parts.bins[b].root != ACDF_NO_ROOT && parts.bins[b].root >= rows)
+            report.add(6026, payload.at(b * sizeof(AcdfBin)), "bin %u: row %u of %u", b, parts.bins[b].root, rows);
 }
 
 } // namespace

@@ -1,32 +1,12 @@
 #include "check/rule_codes.h"
 
 acdf::ErrorCode acdf::code_of(int rule) noexcept {
-    switch (rule) {
-    case 1001:
-        return ErrorCode::cannot_open;
-    case 1002:
-        return ErrorCode::cannot_read;
-    case 1003:
-        return ErrorCode::out_of_memory;
-    case 1004:
-    case 3012:
-        return ErrorCode::limit_exceeded;
-    case 2003:
-    case 2006:
-    case 2007:
-    case 3002:
-    case 3005:
-    case 5001:
-    case 5002:
-    case 5003:
-    case 5004:
-    case 5005:
-    case 5019:
-    case 5021:
-        return ErrorCode::unsupported;
-    case 6012:
-        return ErrorCode::none;
-    default:
-        return ErrorCode::malformed;
-    }
+    constexpr short unsupported[] = {2003, 2006, 2007, 3002, 3005, 5001, 5002, 5003, 5004, 5005, 5019, 5021};
+    for (const int known : unsupported)
+        if (rule == known) return ErrorCode::unsupported;
+    if (rule == 1001) return ErrorCode::cannot_open;
+    if (rule == 1002) return ErrorCode::cannot_read;
+    if (rule == 1003) return ErrorCode::out_of_memory;
+    if (rule == 1004 || rule == 3012) return ErrorCode::limit_exceeded;
+    return rule == 6012 ? ErrorCode::none : ErrorCode::malformed;
 }

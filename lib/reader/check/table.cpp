@@ -9,23 +9,15 @@ namespace acdf {
 
 namespace {
 
-// Sets parts.bins if BINS has its length and its shares say which bins have trees.
+// Leaves parts.bins null where shares do not say which bins have trees.
 void check_table_bins(const Payload& payload, Report& report, Parts& parts) {
     const u32 count = parts.description->bin_count;
-    if (payload.size != u64{count} * sizeof(AcdfBin))
-        return report.add(4004, payload.at(0), "BINS has %llu bytes", static_cast<ull>(payload.size));
-    const auto* bins = reinterpret_cast<const AcdfBin*>(payload.data);
     double sum = 0.0;
-    bool right = true;
-    for (u32 i = 0; i < count && !report.stopped(); ++i) {
-        const float share = bins[i].share;
-        sum += static_cast<double>(share);
-        if (share >= 0.0f && std::isfinite(share)) continue;
-        right = false;
-        report.add(6017, payload.at(i * sizeof(AcdfBin)), "bin %u: %g", i, static_cast<double>(share));
+    if (!check_bins(payload, report, parts)) {
+        parts.bins = nullptr;
+        return;
     }
-    if (!right) return;
-    parts.bins = bins;
+    for (u32 i = 0; i < count; ++i) sum += static_cast<double>(parts.bins[i].share);
     if (!(std::fabs(sum - 1.0) <= 0x1p-20)) report.add(9005, payload.at(0), "their sum is %.9g", sum);
 }
 
@@ -60,9 +52,7 @@ void check_table_axes(const Payload& payload, Report& report, const Parts& parts
             report.add(9004, at + offsetof(AcdfAxis, low), "axis %u: %u steps from %g to %g", i, axis.resolution,
                        axis.low, axis.high);
     }
-    if (bins != d.bin_count && bins != 0) // 0: rule 5014
-        report.add(9003, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins, its axes make %llu",
-                   d.bin_count, static_cast<ull>(bins));
+    if (bins != 0) check_bin_count(payload, 9003, bins, report, parts); // 0: rule 5014
 }
 
 } // namespace

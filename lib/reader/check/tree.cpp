@@ -307,22 +307,6 @@ void check_ranges(const Tree& tree, u32 curves, u32 axis, Report& report) {
 
 // ---- bins -----------------------------------------------------------------------------------------------
 
-bool check_bins(const Payload& payload, Report& report, Parts& parts) {
-    const u32 count = parts.description->bin_count;
-    if (payload.size != u64{count} * sizeof(AcdfBin)) {
-        report.add(4004, payload.at(0), "BINS has %llu bytes for %u bins", static_cast<ull>(payload.size), count);
-        return false;
-    }
-    parts.bins = reinterpret_cast<const AcdfBin*>(payload.data);
-    for (u32 i = 0; i < count && !report.stopped(); ++i) {
-        const AcdfBin& bin = parts.bins[i];
-        const u64 at = payload.at(i * sizeof(AcdfBin));
-        if (!std::isfinite(bin.share) || bin.share < 0.0f)
-            report.add(6017, at + offsetof(AcdfBin, share), "bin %u: it is %g", i, static_cast<double>(bin.share));
-    }
-    return true;
-}
-
 void check_roots(const Tree& tree, Report& report) {
     for_each_root(tree, [&](u32 root, u32 bin) {
         if (!tree.starts_at(root))
@@ -352,14 +336,14 @@ void check_found_curves(Tree& tree, Report& report) {
 } // namespace
 
 void check_tree(const Payload& bins, const Payload& payload, u32 kind, Report& report, Parts& parts) noexcept {
-    const bool bins_ok = bins.data && check_bins(bins, report, parts);
+    if (bins.data) check_bins(bins, report, parts);
     if (!payload.data || report.stopped()) return;
     const u64 units = payload.size / 2;
     if (payload.size == 0 || payload.size % 2 != 0 || units > 0xFFFFFFFE) {
         report.add(6001, payload.at(0), "it has %llu bytes", static_cast<ull>(payload.size));
         return;
     }
-    if (!bins_ok || parts.description->bin_count == 0) return;
+    if (!parts.bins || parts.description->bin_count == 0) return;
     parts.tree = payload.data;
     parts.tree_units = static_cast<u32>(units);
     const u64 runs = units / 64 + 1;

@@ -38,10 +38,10 @@ bool check_size(const Payload& payload, u32 top_splits, Report& report) {
 }
 
 void check_bounds(const Payload& payload, const AcdfVisibility& h, Report& report) {
-    for (int k = 0; k < 3; ++k) {
+    for (u32 k = 0; k < 3; ++k) {
         bool right = std::isfinite(h.low[k]) && std::isfinite(h.high[k]) && h.low[k] < h.high[k];
         for (const float t : h.transform[k]) right = right && std::isfinite(t);
-        if (!right) report.add(7010, payload.at(offsetof(AcdfVisibility, low)), "coordinate %d", k);
+        if (!right) report.add(7010, payload.at(offsetof(AcdfVisibility, low)), "coordinate %u", k);
     }
 }
 

@@ -3,8 +3,8 @@
 #ifndef ACDF_BOX_MIDDLE_H
 #define ACDF_BOX_MIDDLE_H
 
+#include <acdf/angle_float.h>
 #include <acdf/local.h>
-#include <acdf/sine_float.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -7,8 +7,7 @@
 #ifndef ACDF_SHADER_PIECES_H
 #define ACDF_SHADER_PIECES_H
 
-#include <acdf/atan_float.h>
-#include <acdf/sine_float.h>
+#include <acdf/angle_float.h>
 
 #ifdef __cplusplus
 extern "C" {
