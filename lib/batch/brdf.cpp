@@ -7,8 +7,7 @@
 #include <hwy/foreach_target.h>
 //
 #include "batch/cells-inl.h"
-#include "batch/conditions.h"
-#include "batch/rows.h"
+#include "batch/views-inl.h"
 
 #ifndef ACDF_BATCH_BRDF_ONCE
 #define ACDF_BATCH_BRDF_ONCE
@@ -18,8 +17,6 @@ namespace acdf::batch {
 struct Seen {
     AcdfBrdfView view;
     bool valid;
-
-    bool has_rows() const { return valid && view.mix.count > 0; }
 };
 inline void look(const AcdfBrdf* brdf, const float wo[3], Seen* out) {
     out->valid = acdf_brdf_view(brdf, wo, &out->view) != 0;
@@ -52,6 +49,7 @@ struct BrdfBlock {
     HWY_ALIGN double position[2][kBlock];         // of directions, half-vectors; NaN: single calls find them
     HWY_ALIGN double rows[2][kBlock];             // where the rows of cells begin and end
     HWY_ALIGN double dot[kBlock], length[kBlock]; // of directions, as AcdfBrdfPosition
+    Mixtures mixtures;
     Tiles tiles;
 };
 
@@ -80,7 +78,7 @@ HWY_INLINE hn::Mask<Doubles> half_of(const BrdfBlock& block, std::size_t i, Doub
     hz = hn::Add(at(block.wo[2], i), z);
     length = hn::Sqrt(three(hn::Mul(hx, hx), hn::Mul(hy, hy), hn::Mul(hz, hz)));
     dot = hn::Abs(dot_of(block, i, hx, hy, hz));
-    return hn::And(hn::And(hn::Gt(length2, set(0.999)), hn::Lt(length2, set(1.001))), hn::Gt(length, set(0.0)));
+    return hn::And(is_unit_square(length2), hn::Gt(length, set(0.0)));
 }
 
 // acdf_brdf_azimuth.
@@ -116,13 +114,19 @@ HWY_INLINE Double probability_of(const Tiles& tiles, std::size_t i, Double w0, D
                    hn::Div(hn::Mul(w0, w1), hn::Mul(at(tiles.wide[0], i), at(tiles.wide[1], i))));
 }
 
+// Finds the rows of the views of calls from `first` on, and the turns of acdf_brdf_turn.
 template <int most>
-void take_views(const AcdfBrdf& brdf, const Views& views, std::size_t count, BrdfBlock& block) {
+void take_views(const AcdfBrdf& brdf, const float* views, std::size_t each, std::size_t first, std::size_t count,
+                BrdfBlock& block) {
+    mix_views<most>(brdf, block.mixtures.take(views, each, first, count), block.mixtures);
+    set_rows<most>(brdf.rows_of_views, block.mixtures, count, block.tiles);
     for (std::size_t i = 0; i < count; ++i) {
-        const Seen& seen = views[i];
-        block.tiles.set<most>(i, brdf.rows_of_views, seen.has_rows() ? &seen.view.mix : nullptr);
-        for (int k = 0; k < 3; ++k) block.wo[k][i] = seen.view.wo[k];
-        for (int k = 0; k < 2; ++k) block.turn[k][i] = seen.view.turn[k];
+        const float* wo = block.mixtures.vector_of(i);
+        const double x = static_cast<double>(wo[0]), y = static_cast<double>(wo[1]);
+        const bool turned = brdf.views->phi_count == 1 && x * x + y * y > 0.0;
+        for (int k = 0; k < 3; ++k) block.wo[k][i] = static_cast<double>(wo[k]);
+        block.turn[0][i] = turned ? x : 1.0;
+        block.turn[1][i] = turned ? y : 0.0;
     }
 }
 
@@ -204,17 +208,17 @@ void put_samples(const Table& table, std::size_t count, const BrdfBlock& block, 
 }
 
 template <int most>
-void samples_of_block(const AcdfBrdf& brdf, const Views& views, const double* u, std::size_t count,
-                      BrdfBlock& block, float* directions, float* pdfs) {
+void samples_of_block(const AcdfBrdf& brdf, const double* u, std::size_t count, BrdfBlock& block, float* directions,
+                      float* pdfs) {
     const Table table(brdf);
-    take_views<most>(brdf, views, count, block);
     take_numbers(table, u, count, block);
     block.tiles.sample<most>(brdf.rows_of_views, acdf_halvings_nodes(brdf.halved), count);
     look_up_rows(brdf, count, block);
     put_samples(table, count, block, directions, pdfs);
     for (std::size_t i = 0; i < count; ++i)
-        if (!(pdfs[i] > 0.0f) || !views[i].has_rows())
-            put_sample(sample_of(brdf, views[i], u + 2 * i), directions + 3 * i, pdfs + i);
+        if (!(pdfs[i] > 0.0f) || !block.mixtures.serves(i))
+            put_sample(acdf_brdf_sample(&brdf, block.mixtures.vector_of(i), u[2 * i], u[2 * i + 1]),
+                       directions + 3 * i, pdfs + i);
 }
 
 // ---- pdfs ----
@@ -255,11 +259,10 @@ void take_squares(const AcdfBrdf& brdf, std::size_t count, BrdfBlock& block) {
 }
 
 template <int most>
-void pdfs_of_block(const AcdfBrdf& brdf, const Views& views, const float* directions, std::size_t count,
-                   BrdfBlock& block, float* pdfs) {
+void pdfs_of_block(const AcdfBrdf& brdf, const float* directions, std::size_t count, BrdfBlock& block,
+                   float* pdfs) {
     const Table table(brdf);
     const Tiles& tiles = block.tiles;
-    take_views<most>(brdf, views, count, block);
     place_halves(table, directions, count, block);
     take_squares(brdf, count, block);
     block.tiles.find<most>(brdf.rows_of_views, acdf_halvings_nodes(brdf.halved), count);
@@ -276,44 +279,51 @@ void pdfs_of_block(const AcdfBrdf& brdf, const Views& views, const float* direct
                    Floats(), pdfs + i);
     }
     for (std::size_t i = 0; i < count; ++i)
-        if (!(block.position[0][i] >= 0.0) || !views[i].has_rows())
-            pdfs[i] = pdf_of(brdf, views[i], directions + 3 * i);
+        if (!(block.position[0][i] >= 0.0) || !block.mixtures.serves(i))
+            pdfs[i] = acdf_brdf_pdf(&brdf, block.mixtures.vector_of(i), directions + 3 * i);
 }
 
 // How many calls were served by blocks.
-std::size_t brdf_samples_in_blocks(const AcdfBrdf& brdf, Views& views, const double* u, std::size_t count,
-                                   float* directions, float* pdfs) {
+template <int most>
+std::size_t brdf_samples_in_blocks(const AcdfBrdf& brdf, const float* wo, std::size_t each, const double* u,
+                                   std::size_t count, float* directions, float* pdfs) {
     BrdfBlock block;
     return in_blocks(count, [&](std::size_t i, std::size_t n) {
-        views.take(i, n);
-        if (brdf.views->phi_count == 1)
-            samples_of_block<2>(brdf, views, u + 2 * i, n, block, directions + 3 * i, pdfs + i);
-        else samples_of_block<ACDF_MOST_ROWS_MIXED>(brdf, views, u + 2 * i, n, block, directions + 3 * i, pdfs + i);
+        take_views<most>(brdf, wo, each, i, n, block);
+        samples_of_block<most>(brdf, u + 2 * i, n, block, directions + 3 * i, pdfs + i);
     });
 }
-std::size_t brdf_pdfs_in_blocks(const AcdfBrdf& brdf, Views& views, const float* directions, std::size_t count,
-                                float* pdfs) {
+template <int most>
+std::size_t brdf_pdfs_in_blocks(const AcdfBrdf& brdf, const float* wo, std::size_t each, const float* directions,
+                                std::size_t count, float* pdfs) {
     BrdfBlock block;
     return in_blocks(count, [&](std::size_t i, std::size_t n) {
-        views.take(i, n);
-        if (brdf.views->phi_count == 1) pdfs_of_block<2>(brdf, views, directions + 3 * i, n, block, pdfs + i);
-        else pdfs_of_block<ACDF_MOST_ROWS_MIXED>(brdf, views, directions + 3 * i, n, block, pdfs + i);
+        take_views<most>(brdf, wo, each, i, n, block);
+        pdfs_of_block<most>(brdf, directions + 3 * i, n, block, pdfs + i);
     });
 }
 
 #else
 
-std::size_t brdf_samples_in_blocks(const AcdfBrdf&, Views&, const double*, std::size_t, float*, float*) {
+template <int most>
+std::size_t brdf_samples_in_blocks(const AcdfBrdf&, const float*, std::size_t, const double*, std::size_t, float*,
+                                   float*) {
     return 0;
 }
-std::size_t brdf_pdfs_in_blocks(const AcdfBrdf&, Views&, const float*, std::size_t, float*) { return 0; }
+template <int most>
+std::size_t brdf_pdfs_in_blocks(const AcdfBrdf&, const float*, std::size_t, const float*, std::size_t, float*) {
+    return 0;
+}
 
 #endif
 
 void brdf_samples(const AcdfBrdf& brdf, const float* wo, std::size_t each, const double* u, std::size_t count,
                   float* wi, float* pdfs) {
+    std::size_t i = 0;
+    if (brdf.halved && brdf.views->phi_count == 1)
+        i = brdf_samples_in_blocks<2>(brdf, wo, each, u, count, wi, pdfs);
+    else if (brdf.halved) i = brdf_samples_in_blocks<ACDF_MOST_ROWS_MIXED>(brdf, wo, each, u, count, wi, pdfs);
     Views views(brdf, wo, each);
-    const std::size_t i = brdf.halved ? brdf_samples_in_blocks(brdf, views, u, count, wi, pdfs) : 0;
     views.one_by_one(i, count, [&](std::size_t at, const Seen& seen) {
         put_sample(sample_of(brdf, seen, u + 2 * at), wi + 3 * at, pdfs + at);
     });
@@ -321,8 +331,10 @@ void brdf_samples(const AcdfBrdf& brdf, const float* wo, std::size_t each, const
 
 void brdf_pdfs(const AcdfBrdf& brdf, const float* wo, std::size_t each, const float* wi, std::size_t count,
                float* pdfs) {
+    std::size_t i = 0;
+    if (brdf.halved && brdf.views->phi_count == 1) i = brdf_pdfs_in_blocks<2>(brdf, wo, each, wi, count, pdfs);
+    else if (brdf.halved) i = brdf_pdfs_in_blocks<ACDF_MOST_ROWS_MIXED>(brdf, wo, each, wi, count, pdfs);
     Views views(brdf, wo, each);
-    const std::size_t i = brdf.halved ? brdf_pdfs_in_blocks(brdf, views, wi, count, pdfs) : 0;
     views.one_by_one(i, count,
                      [&](std::size_t at, const Seen& seen) { pdfs[at] = pdf_of(brdf, seen, wi + 3 * at); });
 }

@@ -120,7 +120,7 @@ inline void place_on_square(const Grid& grid, const float* directions, std::size
         const auto valid = hn::And(hn::Gt(length, set(0.9995)), hn::Lt(length, set(1.0005)));
         Double u, v;
         octahedral_point(x, y, z, u, v);
-        const auto step = [valid](Double at, double resolution) {
+        const auto step = [&](Double at, double resolution) {
             const Double position = hn::IfThenElseZero(valid, hn::Mul(at, set(resolution)));
             return hn::BitCast(Words(), hn::DemoteTo(Integers(), hn::Min(position, set(resolution - 1.0))));
         };

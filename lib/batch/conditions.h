@@ -10,6 +10,16 @@
 
 namespace acdf::batch {
 
+// Numbers those of calls [first, first + count), at most a block, from the first of them on. Returns how many they
+// are.
+inline std::size_t number_conditions(std::size_t first, std::size_t count, std::size_t each, std::uint8_t* of) {
+    std::size_t conditions = 0;
+    for (std::size_t i = 0, number = first / each; i < count; ++number, ++conditions)
+        for (const std::size_t end = std::min(count, (number + 1) * each - first); i < end; ++i)
+            of[i] = static_cast<std::uint8_t>(conditions);
+    return conditions;
+}
+
 // look_up(file, vector, point) finds a Point.
 template <class File, class Point, auto look_up>
 class Conditions {
@@ -19,12 +29,9 @@ public:
 
     // Looks up those of calls [first, first + count), at most a block.
     void take(std::size_t first, std::size_t count) {
-        std::size_t number = first / each_, points = 0;
-        for (std::size_t i = 0; i < count; ++number, ++points) {
-            look_up(&file_, vectors_ + 3 * number, &points_[points]);
-            for (const std::size_t end = std::min(count, (number + 1) * each_ - first); i < end; ++i)
-                of_[i] = static_cast<std::uint8_t>(points);
-        }
+        const std::size_t conditions = number_conditions(first, count, each_, of_);
+        const float* vector = vectors_ + 3 * (first / each_);
+        for (std::size_t k = 0; k < conditions; ++k) look_up(&file_, vector + 3 * k, &points_[k]);
     }
     const Point& operator[](std::size_t i) const { return points_[of_[i]]; }
 

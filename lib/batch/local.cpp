@@ -7,8 +7,7 @@
 #include <hwy/foreach_target.h>
 //
 #include "batch/cells-inl.h"
-#include "batch/conditions.h"
-#include "batch/rows.h"
+#include "batch/normals-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace acdf {
@@ -21,16 +20,15 @@ using LocalPoints = Conditions<AcdfLocal, AcdfLocalPoint, acdf_local_at>;
 
 struct LocalBlock {
     Places places;
+    Mixtures mixtures;
     Tiles tiles;
 };
 
-// Sets the rows of each call, where rows serve it.
-void set_rows(const AcdfLocal& local, const LocalPoints& points, std::size_t count, Tiles& tiles) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const AcdfLocalPoint& point = points[i];
-        tiles.set<ACDF_NORMALS_MIXED>(i, local.rows_of_normals,
-                                      point.what == ACDF_LOCAL_ROWS ? &point.by.rows : nullptr);
-    }
+// Finds the rows of the normals of calls from `first` on.
+void take_normals(const AcdfLocal& local, const float* normals, std::size_t each, std::size_t first,
+                  std::size_t count, LocalBlock& block) {
+    mix_normals(local, block.mixtures.take(normals, each, first, count), block.mixtures);
+    set_rows<ACDF_NORMALS_MIXED>(local.rows_of_normals, block.mixtures, count, block.tiles);
 }
 
 // The pdf of cells in tiles, by the widths of their steps and of their boxes.
@@ -42,8 +40,8 @@ HWY_INLINE hn::Vec<Floats> tile_pdf(const Grid& grid, Double w0, Double w1, Doub
     return float_pdf(hn::Mul(hn::Mul(hn::Load(Doubles(), tiles.probability + i), share), scale));
 }
 
-void local_samples_of_block(const AcdfLocal& local, const LocalPoints& points, const double* u, std::size_t count,
-                            LocalBlock& block, float* directions, float* pdfs) {
+void local_samples_of_block(const AcdfLocal& local, const double* u, std::size_t count, LocalBlock& block,
+                            float* directions, float* pdfs) {
     const Grid grid(local.environment);
     Tiles& tiles = block.tiles;
     for (std::size_t i = 0; i < count; i += hn::Lanes(Doubles())) {
@@ -52,7 +50,6 @@ void local_samples_of_block(const AcdfLocal& local, const LocalPoints& points, c
         hn::Store(unit_interval(u0), Doubles(), tiles.u[0] + i);
         hn::Store(unit_interval(u1), Doubles(), tiles.u[1] + i);
     }
-    set_rows(local, points, count, tiles);
     tiles.sample<ACDF_NORMALS_MIXED>(local.rows_of_normals, acdf_halvings_nodes(local.environment.halved), count);
     look_up_heights(local.environment, tiles.descents, count, block.places);
     for (std::size_t i = 0; i < count; i += hn::Lanes(Doubles())) {
@@ -67,17 +64,16 @@ void local_samples_of_block(const AcdfLocal& local, const LocalPoints& points, c
                    Floats(), pdfs + i);
     }
     for (std::size_t i = 0; i < count; ++i)
-        if (points[i].what != ACDF_LOCAL_ROWS)
-            put_sample(acdf_local_sample_at(&local, &points[i], u[2 * i], u[2 * i + 1]), directions + 3 * i,
-                       pdfs + i);
+        if (!block.mixtures.serves(i))
+            put_sample(acdf_local_sample(&local, block.mixtures.vector_of(i), u[2 * i], u[2 * i + 1]),
+                       directions + 3 * i, pdfs + i);
 }
 
-void local_pdfs_of_block(const AcdfLocal& local, const LocalPoints& points, const float* directions,
-                         std::size_t count, LocalBlock& block, float* pdfs) {
+void local_pdfs_of_block(const AcdfLocal& local, const float* directions, std::size_t count, LocalBlock& block,
+                         float* pdfs) {
     const Grid grid(local.environment);
     Tiles& tiles = block.tiles;
     place(grid, directions, count, block.places, tiles.descents);
-    set_rows(local, points, count, tiles);
     tiles.find<ACDF_NORMALS_MIXED>(local.rows_of_normals, acdf_halvings_nodes(local.environment.halved), count);
     look_up_heights(local.environment, tiles.descents, count, block.places);
     for (std::size_t i = 0; i < count; i += hn::Lanes(Doubles())) {
@@ -90,34 +86,37 @@ void local_pdfs_of_block(const AcdfLocal& local, const LocalPoints& points, cons
         hn::StoreU(hn::IfThenElse(sure, pdf, hn::Set(Floats(), -1.0f)), Floats(), pdfs + i);
     }
     for (std::size_t i = 0; i < count; ++i)
-        if (pdfs[i] < 0.0f || points[i].what != ACDF_LOCAL_ROWS)
-            pdfs[i] = acdf_local_pdf_at(&local, &points[i], directions + 3 * i);
+        if (pdfs[i] < 0.0f || !block.mixtures.serves(i))
+            pdfs[i] = acdf_local_pdf(&local, block.mixtures.vector_of(i), directions + 3 * i);
 }
 
 // How many calls were served by blocks.
-std::size_t local_samples_in_blocks(const AcdfLocal& local, LocalPoints& points, const double* u, std::size_t count,
-                                    float* directions, float* pdfs) {
+std::size_t local_samples_in_blocks(const AcdfLocal& local, const float* normals, std::size_t each, const double* u,
+                                    std::size_t count, float* directions, float* pdfs) {
     LocalBlock block;
     return in_blocks(count, [&](std::size_t i, std::size_t n) {
-        points.take(i, n);
-        local_samples_of_block(local, points, u + 2 * i, n, block, directions + 3 * i, pdfs + i);
+        take_normals(local, normals, each, i, n, block);
+        local_samples_of_block(local, u + 2 * i, n, block, directions + 3 * i, pdfs + i);
     });
 }
-std::size_t local_pdfs_in_blocks(const AcdfLocal& local, LocalPoints& points, const float* directions,
-                                 std::size_t count, float* pdfs) {
+std::size_t local_pdfs_in_blocks(const AcdfLocal& local, const float* normals, std::size_t each,
+                                 const float* directions, std::size_t count, float* pdfs) {
     LocalBlock block;
     return in_blocks(count, [&](std::size_t i, std::size_t n) {
-        points.take(i, n);
-        local_pdfs_of_block(local, points, directions + 3 * i, n, block, pdfs + i);
+        take_normals(local, normals, each, i, n, block);
+        local_pdfs_of_block(local, directions + 3 * i, n, block, pdfs + i);
     });
 }
 
 #else
 
-std::size_t local_samples_in_blocks(const AcdfLocal&, LocalPoints&, const double*, std::size_t, float*, float*) {
+std::size_t local_samples_in_blocks(const AcdfLocal&, const float*, std::size_t, const double*, std::size_t, float*,
+                                    float*) {
     return 0;
 }
-std::size_t local_pdfs_in_blocks(const AcdfLocal&, LocalPoints&, const float*, std::size_t, float*) { return 0; }
+std::size_t local_pdfs_in_blocks(const AcdfLocal&, const float*, std::size_t, const float*, std::size_t, float*) {
+    return 0;
+}
 
 #endif
 
@@ -126,8 +125,9 @@ bool serves(const AcdfLocal& local) { return local.rows_of_normals && local.cosi
 
 void local_samples(const AcdfLocal& local, const float* normals, std::size_t each, const double* u,
                    std::size_t count, float* directions, float* pdfs) {
+    const std::size_t i =
+        serves(local) ? local_samples_in_blocks(local, normals, each, u, count, directions, pdfs) : 0;
     LocalPoints points(local, normals, each);
-    const std::size_t i = serves(local) ? local_samples_in_blocks(local, points, u, count, directions, pdfs) : 0;
     points.one_by_one(i, count, [&](std::size_t at, const AcdfLocalPoint& point) {
         put_sample(acdf_local_sample_at(&local, &point, u[2 * at], u[2 * at + 1]), directions + 3 * at, pdfs + at);
     });
@@ -135,8 +135,8 @@ void local_samples(const AcdfLocal& local, const float* normals, std::size_t eac
 
 void local_pdfs(const AcdfLocal& local, const float* normals, std::size_t each, const float* directions,
                 std::size_t count, float* pdfs) {
+    const std::size_t i = serves(local) ? local_pdfs_in_blocks(local, normals, each, directions, count, pdfs) : 0;
     LocalPoints points(local, normals, each);
-    const std::size_t i = serves(local) ? local_pdfs_in_blocks(local, points, directions, count, pdfs) : 0;
     points.one_by_one(i, count, [&](std::size_t at, const AcdfLocalPoint& point) {
         pdfs[at] = acdf_local_pdf_at(&local, &point, directions + 3 * at);
     });

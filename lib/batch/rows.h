@@ -12,25 +12,23 @@
 
 namespace acdf::batch {
 
+inline const std::uint32_t* row_ends(const AcdfNormalRows* rows, std::uint32_t row) {
+    return ACDF_TOP_ARRAY(std::uint32_t, rows, rows->ends) + std::size_t{row} * rows->group_stride;
+}
+
 struct Tiles {
-    alignas(64) double u[2][kBlock];        // in the tile, in the end
-    alignas(64) double probability[kBlock]; // of the tile
-    alignas(64) double wide[2][kBlock]; // steps of the tile; of one that is a leaf 1, so that what follows changes
-                                        // nothing
+    alignas(64) double u[2][kBlock];          // in the tile, in the end
+    alignas(64) double probability[kBlock];   // of the tile
+    alignas(64) double wide[2][kBlock];       // steps of the tile; 1 of a leaf, which then changes nothing
     alignas(64) std::uint32_t low[kBlock][2]; // where they begin
     std::uint32_t tile[kBlock];
     Descents descents;
 
-    // The rows that serve a call; null: some row does, for nothing. None is of more than `most` rows, all have as
-    // many: what is added weighs 0.
-    template <int most>
-    void set(std::size_t i, const AcdfNormalRows* rows, const AcdfRowMixture* mix) {
-        for (int k = 0; k < most; ++k) {
-            const int row = mix && k < mix->count ? k : 0;
-            weight_[k][i] = !mix ? (k == 0 ? ACDF_WEIGHTS : 0.0) : row == k ? acdf_rows_weight(mix, k) : 0.0;
-            ends_[k][i] = mix ? mix->ends[row] : ACDF_TOP_ARRAY(std::uint32_t, rows, rows->ends);
-            before_[k][i] = mix ? mix->before[row] : acdf_row_before(rows, 0);
-        }
+    // The k-th row that serves a call, and its weight. All calls have as many: what is added weighs 0.
+    void set(std::size_t i, int k, const std::uint32_t* ends, const std::uint32_t* before, double weight) {
+        ends_[k][i] = ends;
+        before_[k][i] = before;
+        weight_[k][i] = weight;
     }
 
     // acdf_rows_sample_tile of u, then the descent in the tile.

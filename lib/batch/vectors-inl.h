@@ -108,15 +108,19 @@ HWY_INLINE Double narrow_atanpi(Double w) {
     return hn::Mul(w, hn::Add(low, hn::Mul(hn::Mul(q4, q4), high)));
 }
 
-// acdf_atan2pi of y and x that are not negative.
 HWY_INLINE Double atan2pi(Double y, Double x) {
-    const Double high = hn::Max(x, y), low = hn::Min(x, y);
+    const Double ax = hn::Abs(x), ay = hn::Abs(y), high = hn::Max(ax, ay), low = hn::Min(ax, ay), east = sign(x);
     const Double narrow = sign(hn::Sub(hn::Mul(set(0.41421356237309503), high), low));
-    const Double wide = hn::Sub(set(0.5), hn::Mul(set(0.5), narrow)), level = sign(hn::Sub(x, y));
+    const Double wide = hn::Sub(set(0.5), hn::Mul(set(0.5), narrow)), level = sign(hn::Sub(ax, ay));
     const Double w = hn::IfThenElseZero(
         hn::Gt(high, set(0.0)), hn::Div(hn::Sub(low, hn::Mul(wide, high)), hn::Add(high, hn::Mul(wide, low))));
-    const Double turn = hn::Add(narrow_atanpi(w), hn::Mul(set(0.25), wide));
-    return hn::Add(hn::Sub(set(0.25), hn::Mul(set(0.25), level)), hn::Mul(level, turn));
+    const Double narrow_turn = hn::Add(narrow_atanpi(w), hn::Mul(set(0.25), wide));
+    const Double turn = hn::Add(hn::Sub(set(0.25), hn::Mul(set(0.25), level)), hn::Mul(level, narrow_turn));
+    return hn::Mul(sign(y), hn::Add(hn::Sub(set(0.5), hn::Mul(set(0.5), east)), hn::Mul(east, turn)));
+}
+
+HWY_INLINE hn::Mask<Doubles> is_unit_square(Double length2) {
+    return hn::And(hn::Gt(length2, set(0.999)), hn::Lt(length2, set(1.001)));
 }
 
 // acdf_atan_float.
