@@ -5,8 +5,8 @@
 //
 // Descents take turns, so that they wait for memory together. What is computed before and after takes the widest
 // vectors that the processor has: AVX-512, AVX2, SSE4, NEON and others of Google Highway. Where it has none, a
-// batch is the loop over single calls. All functions are thread-safe, allocate and throw nothing. Arrays may not
-// overlap.
+// batch is the loop over single calls. All functions are thread-safe, allocate and throw nothing. They take up to
+// 50 KiB of the stack. Arrays may not overlap.
 #pragma once
 
 #include <acdf/views.h>
