@@ -58,7 +58,11 @@ if(ACDF_BUILD_SHARED)
     acdf_debian_package(libraries libacdf0 "" "importance sampling of measured light: shared libraries"
         "The reader samples from .acdf files and evaluates their densities, the\nbuilder makes them in memory."
         runtime)
-    acdf_debian_package(development libacdf-dev "libacdf0 ${same}, zlib1g-dev, libtbb-dev"
+    set(development_needs "libacdf0 ${same}, zlib1g-dev, libtbb-dev")
+    if(ACDF_BUILD_BATCH)
+        string(APPEND development_needs ", libhwy-dev")
+    endif()
+    acdf_debian_package(development libacdf-dev "${development_needs}"
         "importance sampling of measured light: headers and libraries"
         "To sample from .acdf files in a renderer (C, C++ and kernels), and to make\nthem in memory: static and shared libraries, for CMake and pkg-config."
         reader ${ACDF_ROOMS} builder shared)

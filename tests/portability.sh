@@ -2,6 +2,7 @@
 # portability.sh: reader and builder for other systems, as far as one machine can test. Not a part of tests/run.sh. The builder is
 # compiled and no more: Debian has oneTBB's headers, but for no other system its library. Of Debian 12 it needs
 #   libtbb-dev                                  the builder
+#   libhwy-dev                                  batches
 #   g++-mingw-w64-x86-64 wine64                 Windows: cross-compiled, and run
 #   g++-aarch64-linux-gnu qemu-user             64-bit ARM: cross-compiled, and run
 #   g++-s390x-linux-gnu                         big-endian: refused with a message
@@ -75,6 +76,19 @@ compile_builder() {
     echo "$name: the builder's $count sources compile"
 }
 
+# batches NAME CXX RUN...: batches have the bits of single calls, by the vectors that the compiler takes for granted. Of Highway
+# only headers, which are the same for all systems.
+batches() {
+    local name=$1 cxx=$2
+    shift 2
+    [[ -e /usr/include/hwy/highway.h ]] || { echo "left out: batches for $name (no libhwy-dev)"; left_out=$((left_out + 1)); return; }
+    mkdir -p "$work/highway"
+    ln -sfn /usr/include/hwy "$work/highway/hwy"
+    "$cxx" ${flags/-O1/-O2} -Wno-psabi -DACDF_ZLIB=0 -DHWY_COMPILE_ONLY_STATIC -Ilib/batch -isystem "$work/highway" -static \
+        tests/lib/batch/check_files.cpp $(find lib/reader lib/batch -name '*.cpp') -o "$work/$name/batches.exe"
+    echo "$name, $("$@" "$work/$name/batches.exe" tests/golden/v1.0/*.acdf)"
+}
+
 # same NAME RUN...: its samples are those of the compiler here, for every environment of the golden files; a missing file is a
 # message.
 same() {
@@ -119,6 +133,7 @@ else
     if ! missing aarch64-linux-gnu-g++ "64-bit ARM" && ! missing qemu-aarch64 "64-bit ARM"; then
         build aarch64 aarch64-linux-gnu-gcc aarch64-linux-gnu-g++
         same aarch64 qemu-aarch64
+        batches aarch64 aarch64-linux-gnu-g++ qemu-aarch64
         compile_builder aarch64 aarch64-linux-gnu-g++
     fi
 fi

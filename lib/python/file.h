@@ -4,6 +4,9 @@
 #include "python/arrays.h"
 
 #include <acdf/acdf.h>
+#if ACDF_BATCH
+#include <acdf/batch/batch_c.h>
+#endif
 
 #include <atomic>
 #include <memory>

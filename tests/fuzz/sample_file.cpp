@@ -1,6 +1,9 @@
 #include "tests/fuzz/sample_file.h"
 
 #include "tests/fuzz/require.h"
+#if ACDF_BATCH
+#include "tests/fuzz/sample_batches.h"
+#endif
 #include "tests/fuzz/sample_product.h"
 
 #include <acdf/acdf.h>
@@ -36,6 +39,9 @@ void sample_everything(const acdf::EnvironmentView& view, FuzzRandom& random) {
         random.unit_vector(any, false);
         require(view.invert(any, u) == (view.pdf(any) > 0.0f));
     }
+#if ACDF_BATCH
+    sample_batches(view, random);
+#endif
 }
 
 /// The lookup grid of an environment leads where descents from the root do.
@@ -88,6 +94,9 @@ void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom& rando
     }
     sample_product(view, random);
     sample_everything(view.environment(), random);
+#if ACDF_BATCH
+    sample_batches(view, random);
+#endif
 }
 
 void sample_everything(const acdf::BrdfView& view, FuzzRandom& random) {
@@ -104,6 +113,9 @@ void sample_everything(const acdf::BrdfView& view, FuzzRandom& random) {
         if (view.invert(wo, s.direction, u)) require(in_unit_square(u));
         if (view.invert(wo, any, u)) require(in_unit_square(u));
     }
+#if ACDF_BATCH
+    sample_batches(view, random);
+#endif
 }
 
 void sample_everything(const acdf::TableView& view, FuzzRandom& random) {

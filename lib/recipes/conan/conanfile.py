@@ -38,7 +38,7 @@ class Acdf(ConanFile):
     def generate(self):
         toolchain = CMakeToolchain(self)
         toolchain.cache_variables["ACDF_BUILD_BUILDER"] = bool(self.options.builder)
-        for name in ("TOOLS", "TESTS", "PYTHON", "SHARED"):
+        for name in ("TOOLS", "TESTS", "PYTHON", "SHARED", "BATCH"):
             toolchain.cache_variables["ACDF_BUILD_" + name] = False
         toolchain.generate()
 

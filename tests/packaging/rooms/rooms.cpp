@@ -1,10 +1,15 @@
 // A light file by each room beside the reader: rooms LOCAL.acdf.
+#if __has_include(<acdf/batch/batch.h>)
+#include <acdf/batch/batch.h>
+#define BATCH 1
+#endif
 #include <acdf/product/product.h>
 #include <acdf/reader.h>
 #include <acdf/shader/tables.h>
 #include <acdf/views.h>
 
 #include <cstdio>
+#include <cstring>
 
 namespace {
 
@@ -32,6 +37,15 @@ int main(int argc, char** argv) {
     if (!(s.pdf > 0.0f) || sampler.pdf(point, s.direction) != s.pdf) return 1;
     acdf::ShaderTables tables;
     if (!acdf::ShaderTables::make(file, tables).ok()) return 1;
+#ifdef BATCH
+    const double u[20][2] = {{0.3, 0.4}, {0.7, 0.2}};
+    float directions[20][3], pdfs[20];
+    acdf::sample_batch(light.environment(), u, 20, directions, pdfs);
+    for (int i = 0; i < 20; ++i) {
+        const acdf::DirectionSample one = light.environment().sample(u[i][0], u[i][1]);
+        if (std::memcmp(one.direction, directions[i], sizeof one.direction) != 0 || one.pdf != pdfs[i]) return 1;
+    }
+#endif
     std::printf("product and shader: %zu words\n", tables.size());
     return 0;
 }
