@@ -245,16 +245,15 @@ RowHalvings five_rows(std::uint32_t columns, std::uint32_t rows) {
     return out;
 }
 
-/// Four cells, told apart by position and, in the last two, by the normal's z; two of them mixed at each border.
+/// Four cells, told apart by position and, in the last two, by the normal's z.
 /// `regions`: the first and the last part tiles in one place, those between them in another.
 Chunk visibility_chunk(bool regions) {
     Chunk chunk{ACDF_CHUNK_VISIBILITY, {}};
     const AcdfVisibility header = {
         3, 4, 2, regions, {-1, -2, 0}, {3, 2, 4}, {{0, 0, 1, 0.5f}, {1, 0, 0, 0}, {0, 1, 0, 0}}}; // y up, moved
-    const AcdfVisibilitySplit splits[] = {
-        {1.0f, 0.25f, 0 | ACDF_VISIBILITY_ROW << 3, 1},
-        {0.5f, 0.5f, 1 | (ACDF_VISIBILITY_ROW | 1) << 3, 2},
-        {0.25f, 0.125f, 5 | (ACDF_VISIBILITY_ROW | 2) << 3, ACDF_VISIBILITY_ROW | 3}};
+    const AcdfVisibilitySplit splits[] = {{1.0f, 0 | ACDF_VISIBILITY_ROW << 3, 1},
+                                          {0.5f, 1 | (ACDF_VISIBILITY_ROW | 1) << 3, 2},
+                                          {0.25f, 5 | (ACDF_VISIBILITY_ROW | 2) << 3, ACDF_VISIBILITY_ROW | 3}};
     const AcdfColumn columns[] = {{2, 0}, {1, 0x8000}, {1, 0x8001}, {3, 0x8000}};
     const std::uint16_t set_of_row[] = {0, 1, 1, 0};
     const std::uint8_t rows[] = {240, 30,  200, 200, 254, 7, // all light and odds of each

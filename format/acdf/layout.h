@@ -270,7 +270,6 @@ typedef struct AcdfVisibility {
 /* A split of a cell in two. Splits stand in preorder: the lower part, if it is a split, follows at once. */
 typedef struct AcdfVisibilitySplit {
     float position;
-    float blend; /* on both sides of it the two parts are mixed, linearly, as far as this */
     uint32_t
         lower; /* bits 0-2: axis, of the position or (3 to 5) the normal; bits 3-31: the lower part, as `upper` */
     uint32_t upper; /* a later split, or ACDF_VISIBILITY_ROW | a row */
@@ -358,7 +357,7 @@ ACDF_STATIC_ASSERT(sizeof(AcdfPlanes) == 44);
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalHeader) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfViews) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfVisibility) == 88);
-ACDF_STATIC_ASSERT(sizeof(AcdfVisibilitySplit) == 16);
+ACDF_STATIC_ASSERT(sizeof(AcdfVisibilitySplit) == 12);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortals) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortal) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortalMap) == 40);

@@ -75,7 +75,7 @@ class Point:
     """What a normal samples from: `tree` (a root), or `mixture` (pairs of a row and its weight), or nothing."""
 
     tree = mixture = None
-    cells = ()  # of its position
+    cell = None  # of its position
     visible_portals = None
 
 
@@ -107,9 +107,9 @@ class Local:
         mixture = [(self.bins[b][0], m * self.bins[b][1]) for b, m in served]
         out.mixture = [(row, w) for row, w in mixture if w > 0] or None
         if position is not None and self.visibility is not None and out.mixture is not None:
-            out.cells = self.visibility.cells(position, n)
-            if self.portals is not None and out.cells:
-                out.visible_portals = self.portals.visible_portals(out.cells, self.visibility.coordinates(position, n))
+            out.cell = self.visibility.cell(position, n)
+            if self.portals is not None and out.cell:
+                out.visible_portals = self.portals.visible_portals(out.cell, self.visibility.coordinates(position, n))
         return out
 
     def grid_bin(self, n):
@@ -118,13 +118,13 @@ class Local:
 
     def draw(self, point, u, box, s):
         """Sampling from a mixture."""
-        tile, p = (self.visibility.draw(point.mixture, point.cells, u) if point.cells else
+        tile, p = (self.visibility.draw(point.mixture, point.cell, u) if point.cell else
                    self.rows.draw(point.mixture, u))
         return self.rows.sample_within(self.tree, tile, p, u, box, s)
 
     def find(self, point, square, box, s):
         """The cell of a direction."""
-        tile, p = (self.visibility.find(point.mixture, point.cells, square) if point.cells else
+        tile, p = (self.visibility.find(point.mixture, point.cell, square) if point.cell else
                    self.rows.find(point.mixture, square))
         return self.rows.find_within(self.tree, tile, p, square, box, s)
 

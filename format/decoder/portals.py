@@ -72,18 +72,18 @@ class Portals:
         upper = above[i] + (u - i) * (above[i + 1] - above[i])
         return lower + (v - j) * (upper - lower)
 
-    def visible_portals(self, cells, x):
+    def visible_portals(self, row, x):
         """What a position, x[0] to x[5], sees; None where it samples by its row alone."""
-        share = sum_of([a * ((row.portals[0] + 1) / 256) for row, a in cells])
+        share = (row.portals[0] + 1) / 256
         if not share < 1:
             return None
-        seen = [VisiblePortal(self, k, cells, x) for k in range(len(self.portals))]
+        seen = [VisiblePortal(self, k, row, x) for k in range(len(self.portals))]
         seen = [visible_portal for visible_portal in seen if 0 < visible_portal.weight < math.inf]
         return VisiblePortals(share, seen) if seen else None
 
 
 class VisiblePortal:
-    def __init__(self, portals, number, cells, x):
+    def __init__(self, portals, number, row, x):
         self.portals, portal = portals, portals.portals[number]
         self.map, self.weight = portals.maps[portal.map], 0.0
         axis, c = self.map.axis, [a - b for a, b in zip(portal.corner, x)]
@@ -95,14 +95,14 @@ class VisiblePortal:
         for low, high in zip(self.low, self.high):
             if not (low > -STEEPEST and high < STEEPEST and portals.bend(high) - portals.bend(low) > THINNEST):
                 return
-        self.weigh(cells, [dot(a, x[3:]) for a in axis], number)
+        self.weigh(row, [dot(a, x[3:]) for a in axis], number)
 
     def side(self, k, i):
         if i == self.portals.K:
             return self.high[k]
         return self.low[k] + (self.high[k] - self.low[k]) * (i / self.portals.K)
 
-    def weigh(self, cells, n, number):
+    def weigh(self, row, n, number):
         of, K = self.portals, self.portals.K
         cosine, sums = {}, {}
         for i in range(K + 1):
@@ -115,8 +115,7 @@ class VisiblePortal:
         for x in range(K):
             for y in range(K):
                 byte = 1 + (number * K + x) * K + y
-                v = sum_of([a * ((16 + row.portals[byte] % 16) * 2.0**(row.portals[byte] // 16 - 20))
-                            for row, a in cells])
+                v = (16 + row.portals[byte] % 16) * 2.0**(row.portals[byte] // 16 - 20)
                 light = sums[x + 1, y + 1] - sums[x + 1, y] - (sums[x, y + 1] - sums[x, y])
                 corners = cosine[x + 1, y + 1] + cosine[x + 1, y] + (cosine[x, y + 1] + cosine[x, y])
                 density = corners * (0.25 * self.map.unit) * v

@@ -12,7 +12,7 @@ ROW, UNSEEN = 1 << 28, 2.0**-6
 
 class Split:
     def __init__(self, data):
-        self.position, self.blend, lower, upper = struct.unpack("<ffII", data)
+        self.position, lower, upper = struct.unpack("<fII", data)
         self.axis, self.part = lower & 7, (lower >> 3, upper)
 
 
@@ -34,17 +34,17 @@ class Visibility:
         width, set_bytes = 1 + column_count, 4 * column_count
         require(1 <= row_count < ROW and split_count < ROW and further < 65536, 7009)
         require(column_count <= rows.count - 1 and column_count < 1 << 15, 7009)
-        at = 88 + 16 * split_count
+        at = 88 + 12 * split_count
         names = 2 * row_count if further else 0
         require(len(data) == at + set_bytes * (1 + further) + names + row_count * width, 7009)
         numbers = struct.unpack_from("<18f", data, 16)
         self.low, self.high, self.transform = numbers[:3], numbers[3:6], numbers[6:]
         require(all(math.isfinite(x) for x in numbers), 7010)
         require(all(low < high for low, high in zip(self.low, self.high)), 7010)
-        self.splits = [Split(data[88 + 16 * i:104 + 16 * i]) for i in range(split_count)]
+        self.splits = [Split(data[88 + 12 * i:100 + 12 * i]) for i in range(split_count)]
         self.check_walk(row_count)
         for split in self.splits:
-            require(split.axis < 6 and math.isfinite(split.position) and 0 <= split.blend < math.inf, 7012)
+            require(split.axis < 6 and math.isfinite(split.position), 7012)
         sets = []
         for _ in range(1 + further):
             sets.append([Column(data[at + 4 * k:at + 4 * k + 4]) for k in range(column_count)])
@@ -100,27 +100,19 @@ class Visibility:
         length = math.sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2])
         return x + [component / length for component in normal]
 
-    def cells(self, position, normal):
-        """Pairs of a row and its weight; none outside."""
+    def cell(self, position, normal):
+        """A row; None outside."""
         x = self.coordinates(position, normal)
         if x is None:
-            return []
-        found, i = [[self.first(), 1.0]], 0
-        while i < len(found):
-            while not found[i][0] & ROW:
-                split = self.splits[found[i][0]]
-                d = x[split.axis] - split.position
-                if -split.blend < d < split.blend and len(found) < 4:
-                    share = found[i][1] * ((d + split.blend) / (2 * split.blend))
-                    found.append([split.part[1], share])
-                    found[i] = [split.part[0], found[i][1] - share]
-                else:
-                    found[i][0] = split.part[1 if d >= 0 else 0]
-            i += 1
-        return [(self.rows[node & ~ROW], weight) for node, weight in found]
+            return None
+        node = self.first()
+        while not node & ROW:
+            split = self.splits[node]
+            node = split.part[1 if x[split.axis] >= split.position else 0]
+        return self.rows[node & ~ROW]
 
     def descend(self, M, row, choose):
-        """In one cell, to tiles [first, end) that no column parts: these and q. choose(column, lo, hi): the side."""
+        """To tiles [first, end) that no column parts: these and q. choose(column, lo, hi): the side."""
         first, end, q, number = 0, self.tiles.count, 1.0, 0 if row.columns else None
         while number is not None:
             column, odds = row.columns[number], share(row.codes[1 + number], 8) / 2.0**31
@@ -136,15 +128,13 @@ class Visibility:
                 end, number = column.tile, number + 1 if column.is_lower_parted else None
         return first, end, q
 
-    def q(self, M, cells, tile):
-        s = 0.0
-        for row, weight in cells:
-            first, end, q = self.descend(M, row, lambda column, lo, hi: int(tile >= column.tile))
-            s += weight * (q * ((M(tile + 1) - M(tile)) / (M(end) - M(first))) if q > 0 else 0.0)
-        s = (1 - UNSEEN) * s + UNSEEN * ((M(tile + 1) - M(tile)) / 2.0**52)
-        return max(s, LEAST) if s > 0 else 0.0
+    def q(self, M, row, tile):
+        first, end, q = self.descend(M, row, lambda column, lo, hi: int(tile >= column.tile))
+        q = q * ((M(tile + 1) - M(tile)) / (M(end) - M(first))) if q > 0 else 0.0
+        q = (1 - UNSEEN) * q + UNSEEN * ((M(tile + 1) - M(tile)) / 2.0**52)
+        return max(q, LEAST) if q > 0 else 0.0
 
-    def draw(self, mixture, cells, u):
+    def draw(self, mixture, row, u):
         """Changes u; returns the tile and its q."""
         def choose(column, lo, hi):
             x = u[0] * (lo + hi)
@@ -152,23 +142,20 @@ class Visibility:
             u[0] = clamp((x - lo) / hi if upper else x / lo, 0, 1)
             return upper
 
-        M, i = self.tiles.mixed(mixture), 0
+        M = self.tiles.mixed(mixture)
         if u[0] < UNSEEN:
             u[0] = u[0] / UNSEEN
             tile, _ = self.tiles.draw(mixture, u)
-            return tile, self.q(M, cells, tile)
+            return tile, self.q(M, row, tile)
         u[0] = (u[0] - UNSEEN) / (1 - UNSEEN)
-        while i < len(cells) - 1 and u[0] >= cells[i][1]:
-            u[0], i = u[0] - cells[i][1], i + 1
-        u[0] = clamp(u[0] / cells[i][1], 0, 1)
-        first, end, _ = self.descend(M, cells[i][0], choose)
+        first, end, _ = self.descend(M, row, choose)
         x = u[1] * float(M(end) - M(first))
         k = min(math.floor(x), M(end) - M(first) - 1)
         tile = max(t for t in range(first, end) if M(t) - M(first) <= k)
         u[1] = clamp((x - (M(tile) - M(first))) / (M(tile + 1) - M(tile)), 0, 1)
-        return tile, self.q(M, cells, tile)
+        return tile, self.q(M, row, tile)
 
-    def find(self, mixture, cells, square):
+    def find(self, mixture, row, square):
         """The tile of a square and its q."""
         tile = self.tiles.tile_of(square)
-        return tile, self.q(self.tiles.mixed(mixture), cells, tile)
+        return tile, self.q(self.tiles.mixed(mixture), row, tile)

@@ -63,13 +63,8 @@ Colour shown(const LocalEnvironmentView& view, const measure::Hit& hit, double a
         normal[k] = static_cast<float>(hit.n[k]);
     }
     const AcdfLocalPoint point = view.at(position, normal);
-    const AcdfLocalPlace& place = point.place;
-    Colour out = point.cells > 0 ? Colour{} : zero_colour;
-    for (std::size_t i = 0; i < point.cells; ++i) {
-        const AcdfVisibilityTable& table = view.data().visibility;
-        const Colour own_colour = cell_colour(table, acdf_visibility_row(&table, place.row[i]));
-        for (std::size_t k = 0; k < 3; ++k) out[k] += static_cast<float>(place.weight[i]) * own_colour[k];
-    }
+    const AcdfVisibilityTable& table = view.data().visibility;
+    Colour out = point.in_cell ? cell_colour(table, acdf_visibility_row(&table, point.place.cell)) : zero_colour;
     for (float& channel : out) channel *= static_cast<float>(0.45 + 0.55 * askance);
     return out;
 }

@@ -84,7 +84,7 @@ std::optional<std::array<float, 3>> chosen_position(const PlotArguments& options
     if (x.empty()) return std::nullopt;
     if (!view.has_visibility()) throw Failure(options.file + ": stores no visibility cells; leave out --position");
     const float up[3] = {0.0f, 0.0f, 1.0f};
-    if (view.at(x.data(), up).cells == 0)
+    if (view.at(x.data(), up).in_cell == 0)
         throw Failure(options.file + ": the position of --position lies outside of its scene; see acdf info");
     return std::array<float, 3>{x[0], x[1], x[2]};
 }

@@ -197,25 +197,15 @@ VisibilityCells::Parts VisibilityCells::parts(const Range& range) const {
     return out;
 }
 
-/// The smallest extent of the cells below a node that touch its low (or high) side on an axis.
-double VisibilityCells::thinnest(std::uint32_t index, std::uint32_t axis, bool at_low) const {
-    const Node& node = nodes_[index];
-    if (node.first_child == 0) return double{node.high[axis]} - double{node.low[axis]};
-    if (node.axis == axis) return thinnest(node.first_child + (at_low ? 0 : 1), axis, at_low);
-    return std::min(thinnest(node.first_child, axis, at_low), thinnest(node.first_child + 1, axis, at_low));
-}
-
-std::vector<AcdfVisibilitySplit> VisibilityCells::splits(double blend) const {
+std::vector<AcdfVisibilitySplit> VisibilityCells::splits() const {
     std::vector<AcdfVisibilitySplit> out;
     for (const std::uint32_t index : walk_) {
         const Node& node = nodes_[index];
-        const double width =
-            std::min(thinnest(node.first_child, node.axis, false), thinnest(node.first_child + 1, node.axis, true));
         const auto child = [&](std::uint32_t k) {
             const std::uint32_t c = node.first_child + k;
             return nodes_[c].first_child == 0 ? ACDF_VISIBILITY_ROW | number_[c] : number_[c];
         };
-        out.push_back({node.position, static_cast<float>(blend * width), node.axis | child(0) << 3, child(1)});
+        out.push_back({node.position, node.axis | child(0) << 3, child(1)});
     }
     return out;
 }

@@ -53,9 +53,8 @@ public:
                     const Box& high, std::uint32_t cells);
 
     std::uint32_t cell_count() const { return cell_count_; }
-    /// In preorder, cells numbered in the order of the traversal. On both sides of a split as far as `blend` times
-    /// the smallest cell that touches it is mixed.
-    std::vector<AcdfVisibilitySplit> splits(double blend) const;
+    /// In preorder, cells numbered in the order of the traversal.
+    std::vector<AcdfVisibilitySplit> splits() const;
     /// Cells that follow each other.
     struct Range {
         std::uint32_t begin = 0, end = 0;

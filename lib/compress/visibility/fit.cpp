@@ -22,8 +22,6 @@ constexpr double kColumns = 0.147, kMostColumns = 127.0;
 constexpr double kColumnsBesidePortals = 31.0;
 /// Cells that have the same columns, in the mean.
 constexpr std::uint64_t kCellsOfRegion = 200;
-/// How far cells are mixed, of the smaller one at their border.
-constexpr double kBlend = 0.4;
 /// Points of a cell, in the mean: those that decide where it is divided and those for its row; rounds in which
 /// the first are found; and candidates for each.
 constexpr std::size_t kPointsOfDivision = 40, kPointsOfRow = 80;
@@ -151,7 +149,7 @@ void divide(DividedVisibility& out, const VisibilityParts& parts, const Visibili
                          [&](double done) { report(before + 0.8 * (share - before) * done); });
         out.tree =
             std::make_unique<VisibilityCells>(out.light, out.points, low, high, std::max(cells >> shift, 1u));
-        out.splits = out.tree->splits(round + 1 == kRounds ? kBlend : 0.0);
+        out.splits = out.tree->splits();
         report(before = share);
     }
     add(kPointsOfRow * std::size_t{cells});

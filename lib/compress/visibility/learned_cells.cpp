@@ -20,7 +20,6 @@ constexpr float kGuessRays = 3.0f;                       ///< rays that a guess 
 constexpr float kFewestPrior = 1.0f, kMostPrior = 32.0f; ///< the same of what a cell knows for those in it
 constexpr float kUnoccluded = 0.05f; ///< of the samples of a cell: they go where light comes from, whatever is seen
 constexpr float kDarkestCell = 0.1f; ///< of the mean: what is added to the light of each cell
-constexpr double kBlendOfCells = 0.4;      ///< how far cells are mixed, of the smaller one at their border
 constexpr std::uint32_t kManySites = 1024; ///< of a cell whose halves are worth threads of their own
 
 /// A cell, or what is divided into two.
@@ -261,20 +260,11 @@ std::uint32_t divide_best(LearnedCell& root, std::uint32_t most) {
     return count;
 }
 
-/// The smallest extent of the cells that touch the low (or high) side on an axis.
-float thinnest_cell(const LearnedCell& cell, std::uint32_t axis, bool at_low) {
-    if (!cell.divided) return cell.high[axis] - cell.low[axis];
-    if (cell.axis == axis) return thinnest_cell(*cell.child[at_low ? 0 : 1], axis, at_low);
-    return std::min(thinnest_cell(*cell.child[0], axis, at_low), thinnest_cell(*cell.child[1], axis, at_low));
-}
-
 /// Splits in preorder, and the numbers of cells. Returns what the cell is as a child.
 std::uint32_t list_splits(LearnedCell& cell, std::uint32_t& cells, std::vector<AcdfVisibilitySplit>& out) {
     if (!cell.divided) return ACDF_VISIBILITY_ROW | (cell.number = cells++);
     const auto own = static_cast<std::uint32_t>(out.size());
-    const float width =
-        std::min(thinnest_cell(*cell.child[0], cell.axis, false), thinnest_cell(*cell.child[1], cell.axis, true));
-    out.push_back({cell.position, static_cast<float>(kBlendOfCells * double{width}), 0, 0});
+    out.push_back({cell.position, 0, 0});
     const std::uint32_t lower = list_splits(*cell.child[0], cells, out);
     const std::uint32_t upper = list_splits(*cell.child[1], cells, out);
     out[own].lower = cell.axis | lower << 3;

@@ -148,17 +148,16 @@ CellNumbers::CellNumbers(const AcdfVisibility& header, const std::vector<AcdfVis
 }
 
 std::uint32_t CellNumbers::of(const VisibilityPoint& point) const {
-    auto cell = static_cast<std::uint32_t>(rows_.size());
-    for_each(point, [&](std::uint32_t c, double) { cell = std::min(cell, c); });
-    return cell;
+    AcdfVisibilityCell cell;
+    const bool found = acdf_visibility_at(&table_, point.position.data(), point.normal.data(), &cell);
+    return found ? cell.number : static_cast<std::uint32_t>(rows_.size());
 }
 
 std::vector<VisibleShare> shares_of(const CellNumbers& numbers, const std::vector<VisibilityPoint>& points) {
     std::vector<VisibleShare> out;
     for (std::uint32_t i = 0; i < points.size(); ++i)
-        numbers.for_each(points[i], [&](std::uint32_t cell, double weight) {
-            out.push_back({i, cell, static_cast<float>(weight)});
-        });
+        if (const std::uint32_t cell = numbers.of(points[i]); cell < numbers.count())
+            out.push_back({i, cell, 1.0f});
     tbb::parallel_sort(out.begin(), out.end(), [](const VisibleShare& a, const VisibleShare& b) {
         return a.cell != b.cell ? a.cell < b.cell : a.point < b.point;
     });

@@ -10,7 +10,7 @@
 
 namespace acdf::compress {
 
-/// Which cells points lie in, mixed as readers do.
+/// Which cells points lie in, as readers find them.
 class CellNumbers {
 public:
     /// Of `header` only bounds and counts matter: points are among the cells.
@@ -18,14 +18,8 @@ public:
     CellNumbers(const CellNumbers&) = delete;
     CellNumbers& operator=(const CellNumbers&) = delete;
 
-    template <class Visit>
-    void for_each(const VisibilityPoint& point, const Visit& visit) const {
-        AcdfVisibilityMixture mix;
-        acdf_visibility_at(&table_, point.position.data(), point.normal.data(), &mix);
-        for (int k = 0; k < mix.count; ++k)
-            visit(static_cast<std::uint32_t>(mix.row[k] - rows_.data()), mix.weight[k]);
-    }
-    /// The first of them; the number of cells if it lies outside.
+    std::uint32_t count() const { return static_cast<std::uint32_t>(rows_.size()); }
+    /// The number of cells if it lies outside.
     std::uint32_t of(const VisibilityPoint& point) const;
 
 private:
@@ -40,8 +34,7 @@ struct VisibleShare {
     float weight = 0.0f;
 };
 
-/// Points near a border count for the cells on both sides of it, as readers mix them. Those of a cell come
-/// together.
+/// Points of a cell come together.
 std::vector<VisibleShare> shares_of(const CellNumbers& numbers, const std::vector<VisibilityPoint>& points);
 
 /// The code of the visibility nearest to a factor.

@@ -18,14 +18,13 @@ extern "C" {
 ACDF_INLINE AcdfDirectionSample acdf_local_rows_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                        const AcdfGrid* grid, double u[2]) {
     const AcdfHalvedTree* tree = local->environment.halved;
-    AcdfVisibilityMixture cells;
+    AcdfVisibilityCell cell;
     AcdfVisibleRows in;
     const AcdfTopTile* tile;
     double share;
-    if (point->cells == 0) tile = acdf_rows_sample_tile(local->rows_of_normals, &point->by.rows, u, &share);
+    if (!point->in_cell) tile = acdf_rows_sample_tile(local->rows_of_normals, &point->by.rows, u, &share);
     else {
-        acdf_local_cells(local, point, &cells);
-        in = acdf_local_visible_rows(local, point, &cells);
+        in = acdf_local_visible_rows(local, point, &cell);
         tile = acdf_visible_sample_tile(&in, u, &share);
     }
     return acdf_rows_direction(tree, grid, tile, share, u);
@@ -63,10 +62,9 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
 ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_portal_sample(const AcdfLocal* local,
                                                                  const AcdfLocalPoint* point, double* u) {
     const AcdfVisiblePortals* portals = &point->place.portals;
-    AcdfVisibilityMixture cells;
     AcdfPortalEye eye;
     AcdfDirectionSample out;
-    acdf_local_eye(local, point, &cells, &eye);
+    acdf_local_eye(local, point, &eye);
     acdf_visible_portals_sample(&eye, portals, u, out.direction);
     out.pdf =
         acdf_visible_portals_pdf(&eye, portals, out.direction, acdf_local_row_pdf(local, point, out.direction));

@@ -35,14 +35,13 @@ enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_ROWS };
 
 /* Where a position lies: by these numbers all else that it needs is found in the file again. */
 typedef struct AcdfLocalPlace {
-    uint32_t row[ACDF_MAX_CELLS_MIXED]; /* of visibility cells */
-    double weight[ACDF_MAX_CELLS_MIXED];
+    uint32_t cell;              /* of visibility: the number of its row */
     AcdfVisiblePortals portals; /* where it sees any */
 } AcdfLocalPlace;
 
 typedef struct AcdfLocalPoint {
     uint8_t what;
-    uint8_t cells;           /* of visibility that are mixed; 0: the position is not known, or does not matter */
+    uint8_t in_cell;         /* of visibility; 0: the position is not known, or does not matter */
     uint8_t portals;         /* that the position sees */
     float surface[3];        /* the normal as given */
     double length;           /* of the weighted sum of the corners of its bins */
@@ -51,9 +50,9 @@ typedef struct AcdfLocalPoint {
         uint32_t root;       /* ACDF_LOCAL_TREE */
         AcdfRowMixture rows; /* ACDF_LOCAL_ROWS */
     } by;
-    AcdfLocalPlace place; /* of ACDF_LOCAL_ROWS in visibility cells */
+    AcdfLocalPlace place; /* of ACDF_LOCAL_ROWS in a visibility cell */
 } AcdfLocalPoint;
-ACDF_STATIC_ASSERT(sizeof(AcdfLocalPoint) <= 256); /* renderers keep many */
+ACDF_STATIC_ASSERT(sizeof(AcdfLocalPoint) <= 216); /* renderers keep many */
 
 #ifdef __cplusplus
 }

@@ -10,11 +10,10 @@ extern "C" {
 
 /* What of all samples at a point of rows of halvings a tile has. */
 ACDF_INLINE double acdf_local_row_share(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile) {
-    AcdfVisibilityMixture cells;
+    AcdfVisibilityCell cell;
     AcdfVisibleRows in;
-    if (point->cells == 0) return acdf_rows_mass(&point->by.rows, tile, tile + 1u) * 0x1p-52;
-    acdf_local_cells(local, point, &cells);
-    in = acdf_local_visible_rows(local, point, &cells);
+    if (!point->in_cell) return acdf_rows_mass(&point->by.rows, tile, tile + 1u) * 0x1p-52;
+    in = acdf_local_visible_rows(local, point, &cell);
     return acdf_visible_share(&in, tile);
 }
 
@@ -71,18 +70,16 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
 }
 
 /* Looks from a point that sees portals. */
-ACDF_INLINE void acdf_local_eye(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfVisibilityMixture* cells,
-                                AcdfPortalEye* out) {
-    acdf_local_numbers_of_cells(point, cells);
-    acdf_portal_eye(&local->portals, &local->visibility, cells, point->place.portals.position, point->surface, out);
+ACDF_INLINE void acdf_local_eye(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfPortalEye* out) {
+    acdf_portal_eye(&local->portals, &local->visibility, point->place.cell, point->place.portals.position,
+                    point->surface, out);
 }
 
 /* Of rows and portals together; `row`: that of rows. */
 ACDF_OUTLINE_ON_CPU float acdf_local_portals_pdf(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                  const float direction[3], float row) {
-    AcdfVisibilityMixture cells;
     AcdfPortalEye eye;
-    acdf_local_eye(local, point, &cells, &eye);
+    acdf_local_eye(local, point, &eye);
     return acdf_visible_portals_pdf(&eye, &point->place.portals, direction, row);
 }
 

@@ -19,7 +19,7 @@ ACDF_FN uint32_t acdf_nearest_bin(const AcdfNormalBins* bins) {
 /* Begins a point: nothing serves it. */
 ACDF_INLINE void acdf_local_nothing(const float normal[3], AcdfLocalPoint* out) {
     out->what = ACDF_LOCAL_NOTHING;
-    out->cells = out->portals = 0;
+    out->in_cell = out->portals = 0;
     acdf_as_given(normal, out->surface);
     out->length = out->sum = 0.0;
 }
@@ -77,59 +77,42 @@ ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLo
     else acdf_local_tree_at(local, normal, out);
 }
 
-/* Finds what serves a normal at a position of the scene by rows alone, and the visibility cells of that. */
-ACDF_FN void acdf_local_in_cells(const AcdfLocal* local, const float position[3], const float normal[3],
-                                 AcdfVisibilityMixture* cells, AcdfLocalPoint* out) {
-    float surface[3];
-    /* First of all: rows of visibility cells are far away, and come while the normal's are found. */
-    acdf_as_given(normal, surface);
-    acdf_visibility_at(&local->visibility, position, surface, cells);
-    acdf_local_at(local, normal, out);
-    if (cells->count == 0 || out->what != ACDF_LOCAL_ROWS) return;
-    out->sum *= acdf_mixture_visibility(cells);
-    out->cells = (uint8_t)cells->count;
-    memcpy(out->place.row, cells->number, sizeof cells->number);
-    memcpy(out->place.weight, cells->weight, sizeof cells->weight);
-}
-
-/* The visibility cells of a point, but for their rows; and with them. */
-ACDF_INLINE void acdf_local_numbers_of_cells(const AcdfLocalPoint* point, AcdfVisibilityMixture* out) {
-    out->count = point->cells;
-    memcpy(out->number, point->place.row, sizeof out->number);
-    memcpy(out->weight, point->place.weight, sizeof out->weight);
-}
-ACDF_INLINE void acdf_local_cells(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfVisibilityMixture* out) {
-    acdf_local_numbers_of_cells(point, out);
-    acdf_visibility_open(&local->visibility, out);
-}
-
-/* The rows of a point as its cells, which are open, see them. */
-ACDF_INLINE AcdfVisibleRows acdf_local_visible_rows(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                    const AcdfVisibilityMixture* cells) {
-    AcdfVisibleRows out;
-    out.rows = local->rows_of_normals;
-    out.mix = &point->by.rows;
-    out.table = &local->visibility;
-    out.cells = cells;
-    return out;
-}
-
 /* Finds what serves a normal at a position of the scene by rows alone, whatever comes through portals. */
 ACDF_FN void acdf_local_at_cells(const AcdfLocal* local, const float position[3], const float normal[3],
                                  AcdfLocalPoint* out) {
-    AcdfVisibilityMixture cells;
-    acdf_local_in_cells(local, position, normal, &cells, out);
+    AcdfVisibilityCell cell;
+    float surface[3];
+    int found;
+    /* First of all: rows of visibility cells are far away, and come while the normal's are found. */
+    acdf_as_given(normal, surface);
+    found = acdf_visibility_at(&local->visibility, position, surface, &cell);
+    acdf_local_at(local, normal, out);
+    if (!found || out->what != ACDF_LOCAL_ROWS) return;
+    out->sum *= acdf_visibility_of_code(cell.row[0]);
+    out->in_cell = 1;
+    out->place.cell = cell.number;
+}
+
+/* The rows of a point as its visibility cell, which is found again, sees them. */
+ACDF_INLINE AcdfVisibleRows acdf_local_visible_rows(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                    AcdfVisibilityCell* cell) {
+    AcdfVisibleRows out;
+    *cell = acdf_visibility_cell(&local->visibility, point->place.cell);
+    out.rows = local->rows_of_normals;
+    out.mix = &point->by.rows;
+    out.table = &local->visibility;
+    out.cell = cell;
+    return out;
 }
 
 /* Finds what serves a normal at a position of the scene. Outside of all cells, and where there are no visibility
  * cells, that is what serves the normal. */
 ACDF_FN void acdf_local_at_position(const AcdfLocal* local, const float position[3], const float normal[3],
                                     AcdfLocalPoint* out) {
-    AcdfVisibilityMixture cells;
-    acdf_local_in_cells(local, position, normal, &cells, out);
-    if (local->portals.header && out->cells > 0)
-        out->portals = (uint8_t)acdf_visible_portals_at(&local->portals, &local->visibility, &cells, position,
-                                                        out->surface, &out->place.portals);
+    acdf_local_at_cells(local, position, normal, out);
+    if (local->portals.header && out->in_cell)
+        out->portals = (uint8_t)acdf_visible_portals_at(&local->portals, &local->visibility, out->place.cell,
+                                                        position, out->surface, &out->place.portals);
 }
 
 #ifdef __cplusplus

@@ -52,10 +52,9 @@ typedef struct AcdfVisiblePortals {
 /* Where portals are seen from. */
 typedef struct AcdfPortalEye {
     const AcdfPortalTable* table;
-    const AcdfVisibilityMixture* mixture; /* of the cells there; null: nothing hides a portal */
-    const uint8_t* row[ACDF_MAX_CELLS_MIXED];
-    double x[6];      /* position and unit normal among the cells */
-    uint32_t weighed; /* the portal whose pieces are all weighed in `seen`; ACDF_MAX_PORTALS: none */
+    const uint8_t* row; /* of the visibility cell there; null: nothing hides a portal */
+    double x[6];        /* position and unit normal among the cells */
+    uint32_t weighed;   /* the portal whose pieces are all weighed in `seen`; ACDF_MAX_PORTALS: none */
     AcdfVisiblePortal seen;
 } AcdfPortalEye;
 
@@ -156,16 +155,11 @@ ACDF_FN double acdf_piece_side(const AcdfVisiblePortal* visible_portal, int axis
            (visible_portal->high[axis] - visible_portal->low[axis]) * ((double)i / (double)pieces);
 }
 
-/* What the cells see of a piece of a portal. */
+/* What the cell sees of a piece of a portal. */
 ACDF_FN double acdf_portal_visibility(const AcdfPortalEye* eye, uint32_t portal, uint32_t piece) {
     const AcdfPortals* header = eye->table->header;
     const uint32_t index = 1 + portal * header->pieces * header->pieces + piece;
-    double sum = 0.0;
-    int i;
-    if (!eye->mixture) return 1.0;
-    for (i = 0; i < eye->mixture->count; ++i)
-        sum += eye->mixture->weight[i] * acdf_visibility_of_code(eye->row[i][index]);
-    return sum;
+    return eye->row ? acdf_visibility_of_code(eye->row[index]) : 1.0;
 }
 
 /* The light between interpolated sums is less than this part of the largest of them off: no more may be none. */
@@ -224,15 +218,12 @@ ACDF_FN void acdf_portal_weigh(const AcdfPortalEye* eye, uint32_t portal, const 
     }
 }
 
-/* Looks from a position and a normal whose cells a mixture has. Returns 0 outside of all cells. */
-ACDF_FN int acdf_portal_eye(const AcdfPortalTable* table, const AcdfVisibilityTable* visibility,
-                            const AcdfVisibilityMixture* mixture, const float position[3], const float normal[3],
-                            AcdfPortalEye* out) {
-    int i;
+/* Looks from a position and a normal of a cell. Returns 0 outside of all cells. */
+ACDF_FN int acdf_portal_eye(const AcdfPortalTable* table, const AcdfVisibilityTable* visibility, uint32_t cell,
+                            const float position[3], const float normal[3], AcdfPortalEye* out) {
     out->table = table;
-    out->mixture = mixture;
     out->weighed = ACDF_MAX_PORTALS;
-    for (i = 0; i < mixture->count; ++i) out->row[i] = acdf_portal_row(table, mixture->number[i]);
+    out->row = acdf_portal_row(table, cell);
     return acdf_visibility_coordinates(visibility, position, normal, out->x);
 }
 
@@ -250,14 +241,8 @@ ACDF_FN double acdf_portal_weight(AcdfPortalEye* eye, uint32_t portal) {
     return eye->seen.weight > 0.0 && acdf_is_finite(eye->seen.weight) ? eye->seen.weight : 0.0;
 }
 
-/* The share of the row of a mixture. */
-ACDF_FN double acdf_portals_of_row(const AcdfPortalEye* eye) {
-    double sum = 0.0;
-    int i;
-    for (i = 0; i < eye->mixture->count; ++i)
-        sum += eye->mixture->weight[i] * ((double)eye->row[i][0] + 1.0) * (1.0 / 256.0);
-    return sum;
-}
+/* The share of the row. */
+ACDF_FN double acdf_portals_of_row(const AcdfPortalEye* eye) { return ((double)eye->row[0] + 1.0) * (1.0 / 256.0); }
 
 /* The sum of the weights of all portals. */
 ACDF_FN double acdf_visible_portals_weight(const AcdfPortalTable* table,
@@ -268,14 +253,14 @@ ACDF_FN double acdf_visible_portals_weight(const AcdfPortalTable* table,
     return sum;
 }
 
-/* The portals that a mixture, which lies in cells, and a normal see. Returns how many; where it is none, only the
+/* The portals that a position and a normal of a cell see. Returns how many; where it is none, only the
  * row is sampled. */
 ACDF_FN uint32_t acdf_visible_portals_at(const AcdfPortalTable* table, const AcdfVisibilityTable* visibility,
-                                         const AcdfVisibilityMixture* mixture, const float position[3],
-                                         const float normal[3], AcdfVisiblePortals* out) {
+                                         uint32_t cell, const float position[3], const float normal[3],
+                                         AcdfVisiblePortals* out) {
     AcdfPortalEye eye;
     uint32_t k, count = 0;
-    if (!acdf_portal_eye(table, visibility, mixture, position, normal, &eye)) return 0;
+    if (!acdf_portal_eye(table, visibility, cell, position, normal, &eye)) return 0;
     out->of_row = acdf_portals_of_row(&eye);
     if (!(out->of_row < 1.0)) return 0;
     for (k = 0; k < 3; ++k) out->position[k] = position[k];

@@ -34,7 +34,7 @@ public:
     ACDF_METHOD float pdf(const float normal[3], const float direction[3]) const noexcept {
         return acdf_local_pdf(&data_, normal, direction);
     }
-    /// A shading point: its normal is looked up once for all calls of sample and pdf that take the point. 256 bytes
+    /// A shading point: its normal is looked up once for all calls of sample and pdf that take the point. 216 bytes
     /// at most by value; valid while the File lives.
     ACDF_METHOD AcdfLocalPoint at(const float normal[3]) const noexcept {
         AcdfLocalPoint point;

@@ -4,8 +4,7 @@
  * Positions and normals lie in the cells of a k-d tree. The tiles of the tree of halvings, in their order, are
  * parted at *columns*, which all cells of a region have. A cell has a row of bytes: how much of all light reaches
  * it and, at each column, how much from either side. Those multiply what rows of normals give to the sides; the
- * products are made to add up to 1 again at each column, so that the pdf is exact whatever the bytes are. Near the
- * border of two cells their samples are mixed, linearly, so that nothing jumps where at most four cells meet. */
+ * products are made to add up to 1 again at each column, so that the pdf is exact whatever the bytes are. */
 #ifndef ACDF_VISIBILITY_H
 #define ACDF_VISIBILITY_H
 
@@ -15,8 +14,6 @@
 extern "C" {
 #endif
 
-enum { ACDF_MAX_CELLS_MIXED = 4 };
-
 typedef struct AcdfVisibilityTable {
     const AcdfVisibility* header;      /* chunk PLAC; null where there is none */
     const AcdfVisibilitySplit* splits; /* behind it */
@@ -25,14 +22,12 @@ typedef struct AcdfVisibilityTable {
     const uint8_t* rows;
 } AcdfVisibilityTable;
 
-/* The rows of cells around a position, and their weights, whose sum is 1. None: there are no visibility cells. */
-typedef struct AcdfVisibilityMixture {
-    uint32_t number[ACDF_MAX_CELLS_MIXED]; /* of the row */
-    const uint8_t* row[ACDF_MAX_CELLS_MIXED];
-    const AcdfColumn* columns[ACDF_MAX_CELLS_MIXED]; /* of the row */
-    double weight[ACDF_MAX_CELLS_MIXED];
-    int count;
-} AcdfVisibilityMixture;
+/* A visibility cell. */
+typedef struct AcdfVisibilityCell {
+    uint32_t number; /* of its row */
+    const uint8_t* row;
+    const AcdfColumn* columns; /* of the row */
+} AcdfVisibilityCell;
 
 /* The visibility that a byte stands for: 31/32 to 2^-16, in steps of 1/16 to 1/31. Its upper half is the exponent,
  * the lower one begins the mantissa. */
@@ -51,23 +46,13 @@ ACDF_FN const uint8_t* acdf_visibility_row(const AcdfVisibilityTable* table, uin
     return table->rows + number * acdf_visibility_width(table);
 }
 
-/* Finds the rows of a mixture by their numbers. */
-ACDF_INLINE void acdf_visibility_open(const AcdfVisibilityTable* table, AcdfVisibilityMixture* mixture) {
-    const size_t width = acdf_visibility_width(table);
-    int i;
-    for (i = 0; i < mixture->count; ++i) {
-        const uint32_t set = table->set_of_row ? table->set_of_row[mixture->number[i]] : 0;
-        mixture->row[i] = table->rows + mixture->number[i] * width;
-        mixture->columns[i] = table->columns + (size_t)set * table->header->column_count;
-    }
-}
-
-/* How much of all light arrives. */
-ACDF_FN double acdf_mixture_visibility(const AcdfVisibilityMixture* mixture) {
-    double sum = 0.0;
-    int i;
-    for (i = 0; i < mixture->count; ++i) sum += mixture->weight[i] * acdf_visibility_of_code(mixture->row[i][0]);
-    return sum;
+ACDF_INLINE AcdfVisibilityCell acdf_visibility_cell(const AcdfVisibilityTable* table, uint32_t number) {
+    AcdfVisibilityCell out;
+    out.number = number;
+    out.row = acdf_visibility_row(table, number);
+    out.columns =
+        table->columns + (size_t)(table->set_of_row ? table->set_of_row[number] : 0) * table->header->column_count;
+    return out;
 }
 
 /* A position of the scene and a normal among the cells; 0 where it lies outside. */
@@ -87,58 +72,35 @@ ACDF_FN int acdf_visibility_coordinates(const AcdfVisibilityTable* table, const 
     return 1;
 }
 
-/* Finds the cells around a position and a normal (of any length but 0); `out` becomes empty outside of all of them.
- * Where it is within reach of so many borders that more than four cells would be mixed, the lighter side of a
- * border is left out. */
-ACDF_FN void acdf_visibility_at(const AcdfVisibilityTable* table, const float position[3], const float normal[3],
-                                AcdfVisibilityMixture* out) {
-    uint32_t* const node = out->number;
+/* Finds the cell of a position and a normal (of any length but 0). Returns 0 outside of all cells, and where there
+ * are none. */
+ACDF_FN int acdf_visibility_at(const AcdfVisibilityTable* table, const float position[3], const float normal[3],
+                               AcdfVisibilityCell* out) {
     double x[6];
-    int i;
-    out->count = 0;
-    if (!table->header || !acdf_visibility_coordinates(table, position, normal, x)) return;
-    for (i = 0; i < ACDF_MAX_CELLS_MIXED; ++i) { /* all of them: points keep them as they lie */
-        node[i] = 0;
-        out->weight[i] = 0.0;
+    uint32_t node;
+    if (!table->header || !acdf_visibility_coordinates(table, position, normal, x)) return 0;
+    node = table->header->split_count > 0 ? 0 : ACDF_VISIBILITY_ROW;
+    while (!(node & ACDF_VISIBILITY_ROW)) {
+        const AcdfVisibilitySplit* split = &table->splits[node];
+        const uint32_t lower = split->lower >> 3, upper = split->upper;
+        const uint32_t above = (uint32_t)(x[split->lower & 7u] >= (double)split->position);
+        if (!(upper & ACDF_VISIBILITY_ROW)) ACDF_PREFETCH(&table->splits[upper]); /* the lower one is the next */
+        node = lower ^ ((lower ^ upper) & (0u - above)); /* which one is not to be guessed: no branch */
     }
-    node[0] = table->header->split_count > 0 ? 0 : ACDF_VISIBILITY_ROW;
-    out->weight[0] = 1.0;
-    out->count = 1;
-    for (i = 0; i < out->count; ++i) {
-        uint32_t now = node[i];
-        const uint8_t* row;
-        while (!(now & ACDF_VISIBILITY_ROW)) {
-            const AcdfVisibilitySplit* split = &table->splits[now];
-            const double above = x[split->lower & 7u] - (double)split->position, blend = (double)split->blend;
-            const uint32_t lower = split->lower >> 3, upper = split->upper;
-            if (!(upper & ACDF_VISIBILITY_ROW))
-                ACDF_PREFETCH(&table->splits[upper]); /* the lower one is the next */
-            if (fabs(above) < blend && out->count < ACDF_MAX_CELLS_MIXED) {
-                const double share = out->weight[i] * ((above + blend) / (2.0 * blend));
-                node[out->count] = upper;
-                out->weight[out->count++] = share;
-                out->weight[i] -= share;
-                now = lower;
-            } else { /* which one is not to be guessed: no branch */
-                now = lower ^ ((lower ^ upper) & (0u - (uint32_t)(above >= 0.0)));
-            }
-        }
-        node[i] = now & ~ACDF_VISIBILITY_ROW;
-        row = acdf_visibility_row(table, node[i]);
-        ACDF_PREFETCH(row);
-        ACDF_PREFETCH(row + acdf_visibility_width(table) / 2);
-    }
-    acdf_visibility_open(table, out);
+    *out = acdf_visibility_cell(table, node & ~ACDF_VISIBILITY_ROW);
+    ACDF_PREFETCH(out->row);
+    ACDF_PREFETCH(out->row + acdf_visibility_width(table) / 2);
+    return 1;
 }
 
 /* ---- rows of codes as a position sees them ----------------------------------------------------------------- */
 
-/* A mixture of rows, and the cells around a position. */
+/* A mixture of rows, and the cell of a position. */
 typedef struct AcdfVisibleRows {
     const AcdfNormalRows* rows;
     const AcdfRowMixture* mix;
     const AcdfVisibilityTable* table;
-    const AcdfVisibilityMixture* cells; /* some */
+    const AcdfVisibilityCell* cell;
 } AcdfVisibleRows;
 
 #define ACDF_UNSEEN                                                                                                \
@@ -171,11 +133,11 @@ typedef struct AcdfVisibleSides {
     double given[2]; /* what of the samples both have, to a common scale */
 } AcdfVisibleSides;
 
-ACDF_INLINE AcdfVisibleSides acdf_visible_sides(const AcdfVisibleRows* in, int cell, const AcdfVisiblePart* at) {
+ACDF_INLINE AcdfVisibleSides acdf_visible_sides(const AcdfVisibleRows* in, const AcdfVisiblePart* at) {
     const double* of_code = ACDF_TOP_ARRAY(double, in->rows, in->rows->odds);
-    const double odds = of_code[in->cells->row[cell][1u + at->column]];
+    const double odds = of_code[in->cell->row[1u + at->column]];
     AcdfVisibleSides out;
-    out.column = in->cells->columns[cell][at->column];
+    out.column = in->cell->columns[at->column];
     out.lower = acdf_rows_sum(in->mix, in->mix->before, out.column.tile) - at->below;
     out.given[0] = out.lower * odds;
     out.given[1] = (at->mass - out.lower) * (1.0 - odds);
@@ -197,12 +159,12 @@ ACDF_INLINE void acdf_visible_enter(AcdfVisiblePart* at, const AcdfVisibleSides*
 }
 
 /* What of the samples of a cell lies in a tile, and in those before it. */
-ACDF_INLINE double acdf_visible_in_cell(const AcdfVisibleRows* in, int cell, uint32_t tile, double* before) {
+ACDF_INLINE double acdf_visible_in_cell(const AcdfVisibleRows* in, uint32_t tile, double* before) {
     AcdfVisiblePart at = acdf_visible_all(in);
     double mass;
     *before = 0.0;
     while (at.column != ACDF_NO_PARTS) {
-        const AcdfVisibleSides sides = acdf_visible_sides(in, cell, &at);
+        const AcdfVisibleSides sides = acdf_visible_sides(in, &at);
         const uint32_t upper = (uint32_t)(tile >= sides.column.tile);
         if (upper && sides.given[0] > 0.0)
             *before += at.share * (sides.given[0] / (sides.given[0] + sides.given[1]));
@@ -216,35 +178,23 @@ ACDF_INLINE double acdf_visible_in_cell(const AcdfVisibleRows* in, int cell, uin
 
 /* What of all samples a tile has: exactly that of acdf_visible_sample_tile. */
 ACDF_INLINE double acdf_visible_share(const AcdfVisibleRows* in, uint32_t tile) {
-    double share = 0.0, before;
-    int i;
-    for (i = 0; i < in->cells->count; ++i)
-        share += in->cells->weight[i] * acdf_visible_in_cell(in, i, tile, &before);
+    double before, share = acdf_visible_in_cell(in, tile, &before);
     share = (1.0 - ACDF_UNSEEN) * share + ACDF_UNSEEN * (acdf_rows_mass(in->mix, tile, tile + 1u) * 0x1p-52);
     return share > 0.0 ? acdf_positive(share) : 0.0;
 }
 
 /* What of all samples lies in the tiles before one. */
 ACDF_INLINE double acdf_visible_before(const AcdfVisibleRows* in, uint32_t tile) {
-    double share = 0.0, before;
-    int i;
-    for (i = 0; i < in->cells->count; ++i) {
-        acdf_visible_in_cell(in, i, tile, &before);
-        share += in->cells->weight[i] * before;
-    }
-    return (1.0 - ACDF_UNSEEN) * share + ACDF_UNSEEN * (acdf_rows_mass(in->mix, 0, tile) * 0x1p-52);
+    double before;
+    acdf_visible_in_cell(in, tile, &before);
+    return (1.0 - ACDF_UNSEEN) * before + ACDF_UNSEEN * (acdf_rows_mass(in->mix, 0, tile) * 0x1p-52);
 }
 
-/* Samples a tile as the cells see it: a cell by its weight, then a tile. u in [0, 1] is rescaled to [0, 1] in the
- * tile. */
+/* Samples a tile as the cell sees it. u in [0, 1] is rescaled to [0, 1] in the tile. */
 ACDF_INLINE uint32_t acdf_visible_choose_tile(const AcdfVisibleRows* in, double u[2]) {
-    const AcdfVisibilityMixture* cells = in->cells;
     AcdfVisiblePart at = acdf_visible_all(in);
-    int cell = 0;
-    while (cell + 1 < cells->count && !(u[0] < cells->weight[cell])) u[0] -= cells->weight[cell++];
-    u[0] = acdf_unit_interval(u[0] / cells->weight[cell]);
     while (at.column != ACDF_NO_PARTS) {
-        const AcdfVisibleSides sides = acdf_visible_sides(in, cell, &at);
+        const AcdfVisibleSides sides = acdf_visible_sides(in, &at);
         const double x = u[0] * (sides.given[0] + sides.given[1]);
         const uint32_t upper = (uint32_t)(!(x < sides.given[0]) && sides.given[1] > 0.0);
         u[0] = acdf_unit_interval(upper ? (x - sides.given[0]) / sides.given[1] : x / sides.given[0]);

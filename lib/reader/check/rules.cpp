@@ -144,9 +144,7 @@ const Rule rules[] = {
     {7011, error, "visibility-splits",
      "Splits of visibility cells stand in preorder, at most 64 on a path, each met once, and lead to rows that are "
      "there."},
-    {7012, error, "visibility-split",
-     "A split of visibility cells is on one of axes 0 to 5, its position finite, its blend finite and not "
-     "negative."},
+    {7012, error, "visibility-split", "A split of visibility cells is on one of axes 0 to 5, its position finite."},
     {7013, error, "visibility-columns",
      "The columns of each set of visibility cells stand in preorder, at most 64 on a path, each met once, and part "
      "tiles that are there."},

@@ -67,10 +67,9 @@ bool check_splits(const Payload& payload, const AcdfVisibility& h, const AcdfVis
             return false;
         }
         const AcdfVisibilitySplit& split = splits[next];
-        if ((split.lower & 7u) > 5 || !std::isfinite(split.position) || !std::isfinite(split.blend) ||
-            !(split.blend >= 0.0f))
-            report.add(7012, at(next), "split %u: axis %u, position %g, blend %g", next, split.lower & 7u,
-                       static_cast<double>(split.position), static_cast<double>(split.blend));
+        if ((split.lower & 7u) > 5 || !std::isfinite(split.position))
+            report.add(7012, at(next), "split %u: axis %u, position %g", next, split.lower & 7u,
+                       static_cast<double>(split.position));
         ++next;
         open[count++] = {split.upper, now.depth + 1};
         open[count++] = {split.lower >> 3, now.depth + 1};

@@ -302,7 +302,7 @@ TEST(LearnedVisibility, OfAFlatFloor) {
     ASSERT_TRUE(floor.update().ok());
     const auto file = floor.file();
     const float at[3] = {1.0f, 2.0f, 0.0f}, up[3] = {0.0f, 0.0f, 1.0f};
-    EXPECT_GT(file->local().at(at, up).cells, 0);
+    EXPECT_TRUE(file->local().at(at, up).in_cell);
 }
 
 } // namespace

@@ -156,9 +156,9 @@ inline NormalsSpec small_normals() {
 inline NormalsSpec visible_normals() {
     NormalsSpec spec = small_normals();
     spec.visibility.emplace();
-    spec.visibility->splits = {{1.0f, 0.25f, 0, {visibility_row, 1}},
-                               {0.5f, 0.5f, 1, {visibility_row | 1, 2}},
-                               {0.1f, 0.2f, 5, {visibility_row | 2, visibility_row | 3}}};
+    spec.visibility->splits = {{1.0f, 0, {visibility_row, 1}},
+                               {0.5f, 1, {visibility_row | 1, 2}},
+                               {0.1f, 5, {visibility_row | 2, visibility_row | 3}}};
     spec.visibility->columns = {{2, 0}, {1, no_lower_column}};
     spec.visibility->rows = {{240, 200, 60}, {200, 1, 254}, {0, 128, 9}, {90, 30, 250}};
     return spec;

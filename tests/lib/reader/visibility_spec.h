@@ -10,7 +10,7 @@ namespace acdf_test {
 constexpr std::uint32_t visibility_row = 0x10000000;
 
 struct VisibilitySplitSpec {
-    float position, blend;
+    float position;
     std::uint32_t axis;
     std::uint32_t part[2]; ///< a split, or visibility_row | a row
 };
@@ -40,7 +40,6 @@ struct VisibilitySpec {
         for (float x : transform) put_float(out, x);
         for (const VisibilitySplitSpec& split : splits) {
             put_float(out, split.position);
-            put_float(out, split.blend);
             put32(out, split.axis | split.part[0] << 3);
             put32(out, split.part[1]);
         }

@@ -19,6 +19,7 @@ namespace acdf::tools {
 namespace {
 
 constexpr std::uint32_t kSamples = 1024; // so many that rare ones are among them
+constexpr std::uint32_t kEstimates = 8;  // at each point: the spread of 32 points alone is known to an eighth
 
 struct Viewed {
     test::SceneFolder folder;
@@ -52,13 +53,13 @@ struct Viewed {
 /// How far estimates at all points are off, in standard errors by the sums.
 struct Deviations {
     double sum = 0.0, variance = 0.0, square = 0.0;
-    std::uint32_t points = 0, far = 0, lost = 0;
+    std::uint32_t estimates = 0, far = 0, lost = 0;
 
     void add(double deviation, double own) {
         sum += deviation;
         variance += own;
         if (!(own > 0.0)) return;
-        ++points;
+        ++estimates;
         square += deviation * deviation / own;
         far += std::fabs(deviation) > 4.0 * std::sqrt(own);
     }
@@ -75,18 +76,19 @@ void expect_as_summed(Viewed& scene, const std::vector<std::vector<std::string>>
         for (const measure::SamplerParts& one : parts) at.emplace_back(one, point);
         const measure::PointSums exact = measure::sums_at(point, light, at);
         for (std::size_t k = 0; k < at.size(); ++k) {
-            found[k].add(at[k].estimate(point, light, random) - exact.mean, exact.variance[k] / kSamples);
+            for (std::uint32_t i = 0; i < kEstimates; ++i)
+                found[k].add(at[k].estimate(point, light, random) - exact.mean, exact.variance[k] / kSamples);
             found[k].lost += exact.lost[k];
         }
     }
     for (std::size_t k = 0; k < parts.size(); ++k) {
         const Deviations& d = found[k];
         const std::string& name = samplers[k].front();
-        ASSERT_GT(d.points, 30u) << name;
+        ASSERT_GT(d.estimates, 30 * kEstimates) << name;
         EXPECT_EQ(d.lost, 0u) << name;
         EXPECT_LT(std::fabs(d.sum), 4.0 * std::sqrt(d.variance)) << name;
-        EXPECT_NEAR(std::sqrt(d.square / d.points), 1.0, 0.25) << name;
-        EXPECT_LE(d.far, d.points / 50) << name; // estimates of few samples have no normal distribution
+        EXPECT_NEAR(std::sqrt(d.square / d.estimates), 1.0, 0.2) << name;
+        EXPECT_LE(d.far, d.estimates / 50) << name; // estimates of few samples have no normal distribution
     }
 }
 

@@ -34,9 +34,8 @@ typedef struct AcdfCutSplit {
 } AcdfCutSplit;
 
 typedef struct AcdfCut {
-    int count;                   /* of parts; 0: there is nothing to sample */
-    int nearest;                 /* which of the rows weighs most */
-    AcdfVisibilityMixture cells; /* of the point, where it has any */
+    int count;   /* of parts; 0: there is nothing to sample */
+    int nearest; /* which of the rows weighs most */
     AcdfCutPart part[ACDF_CUT_MAX_PARTS];
     AcdfCutSplit split[ACDF_CUT_MAX_PARTS - 1];
     uint32_t boxes[ACDF_CUT_BLOCKS][16]; /* `numbers` of 16 parts each, as blocks of acdf/product/box_bytes.h */
@@ -52,7 +51,6 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
     cut->nearest = 0;
     for (k = 1; k < mix->count; ++k)
         if (mix->weight[k] > mix->weight[cut->nearest]) cut->nearest = k;
-    if (point->cells > 0) acdf_local_cells(local, point, &cut->cells);
     whole->node = local->rows_of_normals->splits ? 0 : ACDF_TOP_TILE;
     whole->end = local->rows_of_normals->splits + 1u;
     whole->high[0] = local->environment.columns;
@@ -81,13 +79,14 @@ ACDF_INLINE AcdfCutPart* acdf_cut_add_split(AcdfCut* cut, int number, uint32_t p
     return upper;
 }
 
-/* What of all samples the lower half of a part has: a whole number, out of 2^52, but for points in visibility
- * cells. */
-ACDF_INLINE double acdf_cut_lower(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
-                                  const AcdfCutPart* part, const AcdfRowSplit* split) {
+/* What of all samples the lower half of a part has: a whole number, out of 2^52, but for points in a visibility
+ * cell. */
+ACDF_INLINE double acdf_cut_lower(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part,
+                                  const AcdfRowSplit* split) {
+    AcdfVisibilityCell cell;
     AcdfVisibleRows in;
-    if (point->cells == 0) return acdf_rows_mass(&point->by.rows, part->first, split->tile) * 0x1p-52;
-    in = acdf_local_visible_rows(local, point, &cut->cells);
+    if (!point->in_cell) return acdf_rows_mass(&point->by.rows, part->first, split->tile) * 0x1p-52;
+    in = acdf_local_visible_rows(local, point, &cell);
     return acdf_clamp(acdf_visible_before(&in, split->tile) - acdf_visible_before(&in, part->first), 0.0,
                       part->sum);
 }
@@ -97,7 +96,7 @@ ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* p
     AcdfCutPart* part = &cut->part[number];
     const AcdfRowSplit* split = &acdf_row_splits(local->rows_of_normals)[part->node];
     const uint32_t axis = split->place & 1u;
-    const double lower = acdf_cut_lower(local, point, cut, part, split);
+    const double lower = acdf_cut_lower(local, point, part, split);
     AcdfCutPart* upper = acdf_cut_add_split(cut, number, split->place);
     upper->sum -= lower;
     part->sum = lower;

@@ -158,7 +158,7 @@ ACDF_FN const AcdfCutPart* acdf_cut_find(const AcdfCut* cut, const uint32_t* squ
 
 /* What of the mixture a part has, out of 2^52. In it all tiles are as visible. */
 ACDF_INLINE double acdf_cut_mass(const AcdfLocalPoint* point, const AcdfCutPart* part) {
-    return point->cells == 0 ? part->sum * 0x1p52 : acdf_rows_mass(&point->by.rows, part->first, part->end);
+    return !point->in_cell ? part->sum * 0x1p52 : acdf_rows_mass(&point->by.rows, part->first, part->end);
 }
 
 /* Pdf per steradian with which acdf_cut_sample samples `direction` (unit); of cuts that are finished. */

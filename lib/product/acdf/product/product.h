@@ -106,7 +106,7 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
     } else {
         point.light.what = ACDF_LOCAL_TREE;
         point.light.by.root = light_.environment.root;
-        point.light.cells = point.light.portals = 0;
+        point.light.in_cell = point.light.portals = 0;
     }
     point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
     const PointOfLobe<AnyLobe> of_lobe = {light_, point.light, point.frame, lobe_, point.lobe, parts_};

@@ -18,7 +18,7 @@ extern "C" {
 
 /* A shading point, ready to be sampled from: plain bytes that may be copied. */
 typedef union AcdfProductPoint {
-    unsigned char bytes[9400];
+    unsigned char bytes[9240];
     double align;
 } AcdfProductPoint;
 

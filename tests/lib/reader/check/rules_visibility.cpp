@@ -44,7 +44,7 @@ Make chain_of_cells(std::uint32_t count) {
         visibility.splits.clear();
         for (std::uint32_t i = 0; i < count; ++i)
             visibility.splits.push_back(
-                {float(i), 0.0f, 2, {visibility_row, i + 1 < count ? i + 1 : visibility_row | 1}});
+                {float(i), 2, {visibility_row, i + 1 < count ? i + 1 : visibility_row | 1}});
     });
 }
 
@@ -91,15 +91,13 @@ std::vector<Case> visibility_cases() {
          with_cells([](VisibilitySpec& p) { p.splits[1].part[1] = 0x80000000 | visibility_row; })},
         {7011, "split_left_over", with_cells([](VisibilitySpec& p) { p.splits[0].part[1] = visibility_row; })},
         {7011, "not_in_preorder", with_cells([](VisibilitySpec& p) {
-             p.splits = {{1.0f, 0.0f, 0, {2, 1}},
-                         {0.0f, 0.0f, 1, {visibility_row, visibility_row}},
-                         {0.0f, 0.0f, 1, {visibility_row, visibility_row}}};
+             p.splits = {{1.0f, 0, {2, 1}},
+                         {0.0f, 1, {visibility_row, visibility_row}},
+                         {0.0f, 1, {visibility_row, visibility_row}}};
          })},
         {7011, "too_deep", chain_of_cells(65)},
         {7012, "seventh_axis", with_cells([](VisibilitySpec& p) { p.splits[1].axis = 6; })},
         {7012, "infinite_position", with_cells([](VisibilitySpec& p) { p.splits[0].position = infinite; })},
-        {7012, "negative_blend", with_cells([](VisibilitySpec& p) { p.splits[0].blend = -0.5f; })},
-        {7012, "infinite_blend", with_cells([](VisibilitySpec& p) { p.splits[1].blend = infinite; })},
         {7013, "column_at_the_first_tile", with_cells([](VisibilitySpec& p) { p.columns[1].tile = 0; })},
         {7013, "column_behind_the_tiles", with_cells([](VisibilitySpec& p) { p.columns[0].tile = 3; })},
         {7013, "column_twice", with_cells([](VisibilitySpec& p) { p.columns[1].tile = 2; })},
