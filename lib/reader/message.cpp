@@ -16,16 +16,19 @@ public:
     void put(char c) {
         if (out_ < last_) *out_++ = c;
     }
-    void put(const char* text) {
-        while (*text) put(*text++);
+    void put(const char* text, std::size_t size) {
+        const auto room = static_cast<std::size_t>(last_ - out_);
+        if (size > room) size = room;
+        std::memcpy(out_, text, size);
+        out_ += size;
     }
+    void put(const char* text) { put(text, std::strlen(text)); }
     void put(u64 number, u32 base, int width) {
         char digits[20];
-        int count = 0;
-        do digits[count++] = "0123456789abcdef"[number % base];
-        while ((number /= base) > 0);
-        for (; width > count; --width) put('0');
-        while (count > 0) put(digits[--count]);
+        int first = sizeof digits;
+        do digits[--first] = "0123456789abcdef"[number % base];
+        while ((number /= base) > 0 || first > static_cast<int>(sizeof digits) - width);
+        put(digits + first, sizeof digits - static_cast<std::size_t>(first));
     }
 
 #ifndef ACDF_ENVIRONMENT_ONLY
@@ -67,13 +70,10 @@ private:
 
 void write_message(char* out, std::size_t size, const char* format, std::va_list arguments) noexcept {
     Writer writer(out, size);
-    for (; *format; ++format) {
-        if (*format != '%') {
-            writer.put(*format);
-            continue;
-        }
+    while (const char* next = std::strchr(format, '%')) {
+        writer.put(format, static_cast<std::size_t>(next - format));
         int width = 0, longs = 0;
-        for (++format; (*format >= '0' && *format <= '9') || *format == '.' || *format == 'l'; ++format) {
+        for (format = next + 1; (*format >= '0' && *format <= '9') || *format == '.' || *format == 'l'; ++format) {
             if (*format == 'l') ++longs;
             else if (*format != '.') width = 10 * width + (*format - '0');
         }
@@ -85,7 +85,9 @@ void write_message(char* out, std::size_t size, const char* format, std::va_list
             const u64 number = longs ? va_arg(arguments, unsigned long long) : va_arg(arguments, u32);
             writer.put(number, *format == 'x' ? 16 : 10, width);
         }
+        ++format;
     }
+    writer.put(format);
 }
 
 void write_message(char* out, std::size_t size, const char* format, ...) noexcept {

@@ -82,7 +82,7 @@ public:
 };
 
 /// For each view a probability density over the directions of light that a surface reflects to it, times the
-/// cosine. wo (towards the viewer) and wi (towards the light) are unit vectors in the surface's frame, z its
+/// cosine. Unit vectors wo (towards the viewer) and wi (towards the light) are in the surface's frame: z is its
 /// normal.
 class BrdfView : public ViewOf<AcdfBrdf> {
 public:

@@ -1,5 +1,7 @@
 #include "check/rules.h"
 
+#include <algorithm>
+
 namespace acdf {
 
 namespace {
@@ -197,9 +199,10 @@ const Rule rules[] = {
 const std::size_t rule_count = sizeof rules / sizeof rules[0];
 
 const Rule* find_rule(int number) noexcept {
-    for (const Rule& rule : rules)
-        if (rule.number == number) return &rule;
-    return nullptr;
+    const Rule* const end = rules + rule_count;
+    const Rule* const found =
+        std::lower_bound(rules, end, number, [](const Rule& rule, int sought) { return rule.number < sought; });
+    return found != end && found->number == number ? found : nullptr;
 }
 
 } // namespace acdf
