@@ -18,7 +18,6 @@ namespace acdf::build {
 /// Where a scene gathers light, and what hides it there.
 struct SceneVisibility {
     compress::VisibilityScene scene; ///< empty: there are no visibility cells
-    std::uint64_t local_bytes = 0;   ///< of the budget, for what is there without visibility cells; 0: a quarter
     compress::VisibilityFrame frame;
     std::vector<compress::PortalRectangle> portals; ///< among the cells
 };

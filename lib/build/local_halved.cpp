@@ -91,7 +91,6 @@ private:
     std::uint64_t local_bytes(std::uint64_t least) const {
         const SceneVisibility& visibility = options_.visibility;
         if (!visibility.scene) return budget_;
-        if (visibility.local_bytes > 0) return visibility.local_bytes;
         const std::uint64_t most = budget_ - std::min(budget_, kLeastCells);
         return std::max(std::min(budget_ / kLocalPart, kMostLocal), std::min(least + kSlack, most));
     }

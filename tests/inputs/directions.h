@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <random>
 
 namespace acdf_test {
@@ -24,6 +25,21 @@ inline double dot(const float a[3], const float b[3]) {
 
 /// In [0, 1), the same with every standard library.
 inline double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+/// Numbers in [0, 1) that belong to an index: SplitMix64 (Steele et al. 2014).
+class NumbersOf {
+public:
+    explicit NumbersOf(std::uint64_t index) : state_(index) {}
+    float next() {
+        std::uint64_t z = state_ += 0x9E3779B97F4A7C15u;
+        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+        z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+        return static_cast<float>(static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-53);
+    }
+
+private:
+    std::uint64_t state_;
+};
 
 /// Uniform over the sphere.
 inline Normal random_direction(std::mt19937_64& random) {

@@ -190,21 +190,35 @@ inline std::vector<double> square_probabilities(const acdf::LocalEnvironmentView
     return out;
 }
 
-/// E[(f/p)^2] of one sample for f = L max(0, n . omega), about: of 2 x 2 directions a texel.
+/// E[(f/p)^2] of one sample for f = L max(0, n . omega), about: of 2 x 2 directions a texel. Of a texel of which a
+/// horizon leaves less than these, at most: by its largest cosine.
 inline double second_moment(const LocalMap& map, const float normal[3]) {
     const auto view = map.view();
     const AcdfLocalPoint at = view.at(normal);
     const double size = length(normal);
+    const auto cosine_of = [&](const Normal& d) { return dot(normal, d.data()) / size; };
     acdf::compress::Sum sum;
     for (std::uint32_t r = 0; r < map.target.rows; ++r)
-        for (std::uint32_t c = 0; c < map.target.columns; ++c)
-            for (int k = 0; k < 4 && map.radiance(c, r) > 0.0f; ++k) {
-                const float* d = map.quarters[4 * map.texel(c, r) + std::size_t(k)].data();
-                const double cosine = dot(normal, d) / size, f = static_cast<double>(map.radiance(c, r)) * cosine;
+        for (std::uint32_t c = 0; c < map.target.columns; ++c) {
+            const auto light = static_cast<double>(map.radiance(c, r));
+            if (!(light > 0.0)) continue;
+            bool any = false;
+            for (int k = 0; k < 4; ++k) {
+                const Normal& d = map.quarters[4 * map.texel(c, r) + std::size_t(k)];
+                const double cosine = cosine_of(d), f = light * cosine;
                 if (!(cosine > 0.0)) continue;
+                any = true;
                 sum.add(0.25 * square_area(view.data().environment, r) * f * f /
-                        static_cast<double>(view.pdf(at, d)));
+                        static_cast<double>(view.pdf(at, d.data())));
             }
+            const double sliver = any ? 0.0 : map.exact.of_texel(normal, c, r);
+            if (!(sliver > 0.0)) continue;
+            double most = 0.0;
+            for (int k = 0; k < 4; ++k)
+                most = std::max(most, cosine_of(direction_at_position(map.target, c + k % 2, r + k / 2)));
+            sum.add(light * light * most * sliver /
+                    static_cast<double>(view.pdf(at, map.centres[map.texel(c, r)].data())));
+        }
     return sum.value();
 }
 

@@ -25,8 +25,6 @@ double sum_of_products(const NoiseKernel::Histogram& a, const NoiseKernel::Histo
 
 } // namespace
 
-double NoiseCurve::y(std::size_t node) { return kNodes[node]; }
-
 Demand::Demand(const NoiseCurve& curve, double radiance) {
     std::array<double, NoiseCurve::nodes> noise;
     for (std::size_t k = 0; k < noise.size(); ++k)

@@ -9,13 +9,11 @@
 namespace acdf::compress {
 
 /// What light of radiance L from one direction adds to the sum of the noise of all normals, if it is sampled with
-/// n_b / n_l times the pdf y: L^2 square(y) + L mean(y). At nodes, with how fast either falls there.
+/// n_b / n_l times the pdf y: L^2 square(y) + L mean(y). At nodes, with how fast either falls there: y is 0, then
+/// from far below the pdf of an MIS partner to where that no longer counts.
 struct NoiseCurve {
     static constexpr std::size_t nodes = 24;
     std::array<double, nodes> square{}, mean{}, square_fall{}, mean_fall{};
-
-    /// y of a node, sr^-1: 0, then from far below the pdf of an MIS partner to where that no longer counts.
-    static double y(std::size_t node);
 };
 
 /// For each price of y the least of noise + price y. Only the lower hull of the noise counts: by a heuristic for

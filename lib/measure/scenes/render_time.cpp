@@ -7,6 +7,8 @@
 namespace acdf::measure {
 namespace {
 
+constexpr std::size_t kMostPoints = 1024;
+
 /// One estimator at work on the same points over and over, as a renderer's thread is.
 class Runner {
 public:
@@ -39,7 +41,7 @@ std::vector<std::vector<double>> time_estimates(const std::vector<ScenePoint>& p
                                                 const std::vector<std::vector<const Estimator*>>& estimators,
                                                 const TimingOptions& options) {
     std::vector<std::vector<double>> out(estimators.size());
-    const std::size_t count = std::min<std::size_t>(points.size(), options.most_points);
+    const std::size_t count = std::min<std::size_t>(points.size(), kMostPoints);
     std::vector<const ScenePoint*> chosen;
     for (std::size_t i = 0; i < count; ++i) chosen.push_back(&points[i * points.size() / count]);
     if (chosen.empty()) return out;

@@ -11,6 +11,11 @@
 namespace acdf::measure {
 namespace {
 
+constexpr double kRadius = 0.04;     // how far a cache point serves, of the diagonal of the box of all points
+constexpr double kLeastCosine = 0.9; // between normals
+constexpr std::uint32_t kRays = 4;   // a tile; a power of 2
+constexpr float kFloor = 0.05f;
+
 double diagonal(const std::vector<ScenePoint>& points) {
     Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
     for (const ScenePoint& point : points)
@@ -29,9 +34,8 @@ double square_distance(const float a[3], const float b[3]) {
 
 } // namespace
 
-VisibilityCache::VisibilityCache(const TilingOnTheFly& tiling, const std::vector<ScenePoint>& points,
-                                 const Options& options)
-    : options_(options), radius_(std::max(options.radius * diagonal(points), 1e-6)), tiles_(tiling.tiles()) {
+VisibilityCache::VisibilityCache(const TilingOnTheFly& tiling, const std::vector<ScenePoint>& points)
+    : radius_(std::max(kRadius * diagonal(points), 1e-6)), tiles_(tiling.tiles()) {
     const Stopwatch watch;
     for (const ScenePoint& point : points)
         if (!factors(point.shading())) add(tiling, point);
@@ -57,16 +61,15 @@ void VisibilityCache::add(const TilingOnTheFly& tiling, const ScenePoint& point)
                               entry.position[2] + (neighbour / 9 - 1) * radius_};
         cells_[cell(at)].push_back(index);
     }
-    for (std::size_t tile = 0; tile < tiles_; ++tile)
-        factors_.push_back(options_.floor + share_seen(tiling, tile, point));
+    for (std::size_t tile = 0; tile < tiles_; ++tile) factors_.push_back(kFloor + share_seen(tiling, tile, point));
 }
 
 float VisibilityCache::share_seen(const TilingOnTheFly& tiling, std::size_t tile, const ScenePoint& point) {
     if (!(tiling.flux()[tile] > 0.0)) return 1.0f;
     std::uint32_t above = 0, seen = 0;
-    for (std::uint32_t ray = 0; ray < options_.rays; ++ray) {
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) {
         const auto u = sobol_point(ray);
-        const double middle = 0.5 / options_.rays; // of the strata that the first points have one each of
+        const double middle = 0.5 / kRays; // of the strata that the first points have one each of
         const AcdfDirectionSample s =
             tiling.sample_tile(tile, below_one(u[0] * 0x1p-32 + middle), below_one(u[1] * 0x1p-32 + middle));
         const Vec3 d{double{s.direction[0]}, double{s.direction[1]}, double{s.direction[2]}};
@@ -91,7 +94,7 @@ const float* VisibilityCache::factors(const ShadingPoint& point) const {
         const double distance = square_distance(entry.position, point.position);
         const double cosine = double{entry.n[0]} * double{point.n[0]} + double{entry.n[1]} * double{point.n[1]} +
                               double{entry.n[2]} * double{point.n[2]};
-        if (!(distance <= nearest && cosine >= options_.least_cosine)) continue;
+        if (!(distance <= nearest && cosine >= kLeastCosine)) continue;
         nearest = distance;
         best = factors_.data() + i * tiles_;
     }
@@ -110,7 +113,7 @@ class CachedTiling final : public LightSampler {
 public:
     CachedTiling(const compress::Target& target, std::uint32_t columns, std::uint32_t rows,
                  const std::vector<ScenePoint>& points)
-        : tiling_(target, columns, rows), cache_(tiling_, points, VisibilityCache::Options{}) {}
+        : tiling_(target, columns, rows), cache_(tiling_, points) {}
 
     std::unique_ptr<PointSampler> point_sampler() const override { return std::make_unique<Point>(*this); }
     std::uint64_t bytes() const override { return tiling_.bytes() + cache_.bytes(); }

@@ -16,16 +16,9 @@ namespace acdf::measure {
 /// of the nearest one. What the rays missed is not lost: a floor is added to all shares.
 class VisibilityCache {
 public:
-    struct Options {
-        double radius = 0.04;      ///< how far a cache point serves, of the diagonal of the box of all points
-        double least_cosine = 0.9; ///< between normals
-        std::uint32_t rays = 4;    ///< a tile; a power of 2
-        float floor = 0.05f;
-    };
+    VisibilityCache(const TilingOnTheFly& tiling, const std::vector<ScenePoint>& points);
 
-    VisibilityCache(const TilingOnTheFly& tiling, const std::vector<ScenePoint>& points, const Options& options);
-
-    /// Factors for the tiles' weights, in (0, 1 + floor]; null where no cache point serves.
+    /// Factors for the tiles' weights, above 0 and little above 1 at most; null where no cache point serves.
     const float* factors(const ShadingPoint& point) const;
     std::size_t size() const { return entries_.size(); }
     std::uint64_t bytes() const;
@@ -39,7 +32,6 @@ private:
     float share_seen(const TilingOnTheFly& tiling, std::size_t tile, const ScenePoint& point);
     std::uint64_t cell(const double at[3]) const;
 
-    Options options_;
     double radius_ = 0.0;
     std::vector<Entry> entries_;
     std::vector<float> factors_; ///< entries x tiles

@@ -154,23 +154,11 @@ double relative_variance(const LocalEnvironmentView& view, bool beside_cosine) {
     for (int i = 0; i < 150; ++i) {
         VisibilityPoint point;
         point_of(3000017 + std::uint64_t(i), point);
-        const AcdfLocalPoint at = view.at(point.position, point.normal);
-        double irradiance = 0.0, square = 0.0;
-        for (int r = 0; r < kRows; ++r)
-            for (int c = 0; c < kColumns; ++c) {
-                const Offset w = direction_of(c + 0.5, r + 0.5);
-                const float d[3] = {float(w.x), float(w.y), float(w.z)};
-                const double cosine =
-                    w.x * double{point.normal[0]} + w.y * double{point.normal[1]} + w.z * double{point.normal[2]};
-                if (!(cosine > 0.0) || Wall().hides(point.position, d)) continue;
-                const double angle =
-                    2.0 * kPi / kColumns * (std::cos(kPi * r / kRows) - std::cos(kPi * (r + 1) / kRows));
-                const double f = radiance(c, r) * cosine,
-                             p = double{view.pdf(at, d)} + (beside_cosine ? cosine / kPi : 0.0);
-                irradiance += f * angle;
-                square += f * f / p * angle;
-            }
-        if (irradiance > 0.0) sum += square / (irradiance * irradiance) - (beside_cosine ? 0.5 : 1.0);
+        const Exact found =
+            exact(view, view.at(point.position, point.normal), point, Wall(), beside_cosine ? 1.0 : 0.0);
+        EXPECT_EQ(found.lost, 0);
+        const double mean = found.irradiance * found.irradiance;
+        if (mean > 0.0) sum += found.variance / mean + (beside_cosine ? 0.5 : 0.0);
     }
     return sum;
 }

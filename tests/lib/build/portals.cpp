@@ -29,24 +29,12 @@ double light_from(const double d[3]) {
 }
 
 const builder::Target& sky() {
-    static const builder::Target made = [] {
-        constexpr int columns = 128, rows = 64;
-        std::vector<float> rgb;
-        for (int r = 0; r < rows; ++r)
-            for (int c = 0; c < columns; ++c) {
-                const double theta = kPi * (r + 0.5) / rows, phi = kPi - 2.0 * kPi * (c + 0.5) / columns;
-                const double d[3] = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                                     std::cos(theta)};
-                rgb.insert(rgb.end(), 3, float(light_from(d)));
-            }
-        builder::Pixels pixels;
-        pixels.data = rgb.data();
-        pixels.width = columns;
-        pixels.height = rows;
-        builder::Target out;
-        EXPECT_TRUE(builder::Target::from(pixels, acdf::test::nearest_lookup(), out).ok());
-        return out;
-    }();
+    constexpr std::uint32_t columns = 128, rows = 64;
+    static const builder::Target made = acdf::test::nearest_target(columns, rows, [](auto c, auto r) {
+        const double theta = kPi * (r + 0.5) / rows, phi = kPi - 2.0 * kPi * (c + 0.5) / columns;
+        const double d[3] = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+        return light_from(d);
+    });
     return made;
 }
 
@@ -77,14 +65,8 @@ bool leaves(const Room& room, const float p[3], const float direction[3]) {
 
 /// On the floor, the wall across from the window, and a wall beside it.
 bool point_of_room(std::uint64_t index, VisibilityPoint& point) {
-    std::uint64_t state = index; // SplitMix64 (Steele et al. 2014)
-    const auto u = [&] {
-        std::uint64_t z = state += 0x9E3779B97F4A7C15u;
-        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-        z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-        return float(double((z ^ z >> 31) >> 11) * 0x1p-53);
-    };
-    const float a = 3.9f * u() - 1.95f, b = u();
+    acdf_test::NumbersOf numbers(index);
+    const float a = 3.9f * numbers.next() - 1.95f, b = numbers.next();
     if (index % 3 == 0) point = {{-1.99f, a, 0.02f + 1.95f * b}, {1.0f, 0.0f, 0.0f}};
     else if (index % 3 == 1) point = {{a, -1.99f, 0.02f + 1.95f * b}, {0.0f, 1.0f, 0.0f}};
     else point = {{a, 3.9f * b - 1.95f, 0.01f}, {0.0f, 0.0f, 1.0f}};

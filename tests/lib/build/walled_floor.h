@@ -41,18 +41,8 @@ inline double radiance(int column, int row) {
 }
 
 inline const builder::Target& target() {
-    static const builder::Target made = [] {
-        std::vector<float> rgb;
-        for (int r = 0; r < kRows; ++r)
-            for (int c = 0; c < kColumns; ++c) rgb.insert(rgb.end(), 3, float(radiance(c, r)));
-        builder::Pixels pixels;
-        pixels.data = rgb.data();
-        pixels.width = kColumns;
-        pixels.height = kRows;
-        builder::Target out;
-        EXPECT_TRUE(builder::Target::from(pixels, acdf::test::nearest_lookup(), out).ok());
-        return out;
-    }();
+    static const builder::Target made =
+        acdf::test::nearest_target(kColumns, kRows, [](auto c, auto r) { return radiance(int(c), int(r)); });
     return made;
 }
 
@@ -70,14 +60,8 @@ struct Wall {
 
 /// The floor from -4 to 4, and the wall's two sides.
 inline bool point_of(std::uint64_t index, VisibilityPoint& point) {
-    std::uint64_t state = index; // SplitMix64 (Steele et al. 2014)
-    const auto u = [&] {
-        std::uint64_t z = state += 0x9E3779B97F4A7C15u;
-        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-        z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-        return float(double((z ^ z >> 31) >> 11) * 0x1p-53);
-    };
-    const float a = u(), b = u();
+    acdf_test::NumbersOf numbers(index);
+    const float a = numbers.next(), b = numbers.next();
     if (index % 4 != 0) {
         point = {{8.0f * a - 4.0f, 8.0f * b - 4.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
     } else {
@@ -93,8 +77,9 @@ struct Exact {
     int lost = 0; ///< texels whose light is never sampled
 };
 
+/// `cosine_samples`: beside each of the file's, by the balance heuristic.
 inline Exact exact(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const VisibilityPoint& point,
-                   const Wall& wall) {
+                   const Wall& wall, double cosine_samples = 0.0) {
     Exact out;
     double square = 0.0;
     for (int r = 0; r < kRows; ++r)
@@ -106,7 +91,7 @@ inline Exact exact(const LocalEnvironmentView& view, const AcdfLocalPoint& at, c
             if (!(cosine > 0.0) || wall.hides(point.position, d)) continue;
             const double angle =
                 2.0 * kPi / kColumns * (std::cos(kPi * r / kRows) - std::cos(kPi * (r + 1) / kRows));
-            const double f = radiance(c, r) * cosine, p = double{view.pdf(at, d)};
+            const double f = radiance(c, r) * cosine, p = double{view.pdf(at, d)} + cosine_samples * cosine / kPi;
             out.irradiance += f * angle;
             out.lost += !(p > 0.0);
             if (p > 0.0) square += f * f / p * angle;

@@ -4,7 +4,6 @@
 #include "compress/cascade.h"
 #include "compress/target.h"
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -55,28 +54,6 @@ inline CellSums cell_sums(const CascadeCell& cell, const acdf::compress::Target&
             sums.square += f * f * measure;
         }
     return sums;
-}
-
-/// Relative variance of f/p where p is constant on each cell: the integral of f^2/p over (integral of f)^2,
-/// less 1. Infinite where f has no support.
-inline double brute_relative_variance(const std::vector<CascadeCell>& cells, const acdf::compress::Target& target) {
-    long double second = 0.0L, first = 0.0L;
-    for (const CascadeCell& cell : cells) {
-        const CellSums sums = cell_sums(cell, target);
-        first += sums.f;
-        if (sums.square > 0.0L) second += sums.square * sums.measure / cell.probability;
-    }
-    return static_cast<double>(second / (first * first) - 1.0L);
-}
-
-/// The sum over cells of C = sqrt(measure x integral of f^2).
-inline double cost_sum(const std::vector<CascadeCell>& cells, const acdf::compress::Target& target) {
-    long double sum = 0.0L;
-    for (const CascadeCell& cell : cells) {
-        const CellSums sums = cell_sums(cell, target);
-        sum += std::sqrt(sums.measure * sums.square);
-    }
-    return static_cast<double>(sum);
 }
 
 } // namespace acdf_test

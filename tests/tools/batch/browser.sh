@@ -3,19 +3,8 @@
 # picture or the style is missing, or markup that is put into the page runs or loads something.
 set -euo pipefail
 acdf=$1 make_sky=$2
-browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
-if [ -z "$browser" ]; then
-    echo "skipped: no chromium (tools/packages.txt names the package)"
-    exit 77
-fi
-work=$(mktemp -d)
-# Helpers of the browser may outlive it for a moment, and write to the profile while it is removed.
-trap 'rm -rf "$work" || { sleep 2 && rm -rf "$work"; }' EXIT
-export HOME=$work TMPDIR=$work # its profile, caches and sockets
-run() {
-    timeout 120 "$browser" --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run \
-        --user-data-dir="$work/profile" "$@"
-}
+# shellcheck source=../headless.sh disable=SC1091
+. "$(dirname "${BASH_SOURCE[0]}")/../headless.sh"
 
 mkdir "$work/in"
 "$make_sky" "$work/in/<b>&\"'.pfm"

@@ -3,19 +3,8 @@
 # where the console says anything, the page is wider than the window, or a plot does not show the points of the CSV.
 set -euo pipefail
 acdf=$1 make_sky=$2
-browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
-if [ -z "$browser" ]; then
-    echo "skipped: no chromium (tools/packages.txt names the package)"
-    exit 77
-fi
-work=$(mktemp -d)
-# Helpers of the browser may outlive it for a moment, and write to the profile while it is removed.
-trap 'rm -rf "$work" || { sleep 2 && rm -rf "$work"; }' EXIT
-export HOME=$work TMPDIR=$work # its profile, caches and sockets
-run() {
-    timeout 120 "$browser" --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run \
-        --hide-scrollbars --user-data-dir="$work/profile" "$@"
-}
+# shellcheck source=../headless.sh disable=SC1091
+. "$(dirname "${BASH_SOURCE[0]}")/../headless.sh"
 
 # What the page shows, asked in the page itself; names hold what HTML and CSV have to escape.
 cat >"$work/ask.js" <<'JS'

@@ -1,6 +1,5 @@
 #include "compress/local/halved/filled_rows.h"
 
-#include "compress/local/halved/least_share.h"
 #include "compress/parallel.h"
 
 #include <algorithm>
@@ -10,7 +9,8 @@
 namespace acdf::compress {
 namespace {
 
-constexpr int kDescents = 2;        // towards the minimum
+constexpr int kDescents = 2; // towards the minimum
+constexpr int kShareSteps = 7;
 constexpr float kLeastKept = 0.25f; // of a bin's own best part
 constexpr float kMostChange = 4.0f; // in a step
 // Tables have four steps an octave, and are linear in between: the bits of a float are their numbers.
@@ -33,6 +33,19 @@ float value_at(const float* table, float y) {
     const Knot k = knot_of(y);
     return table[k.at] + k.between * (table[k.at + 1] - table[k.at]);
 }
+/// The share in (0.02, 0.98) of which `moment(share)`, which is convex, is least: by golden-section search.
+template <class Moment>
+float least_share(const Moment& moment) {
+    constexpr double golden = 0.6180339887498949;
+    double low = 0.02, high = 0.98;
+    for (int step = 0; step < kShareSteps; ++step) {
+        const double left = high - golden * (high - low), right = low + golden * (high - low);
+        if (moment(left) < moment(right)) high = right;
+        else low = left;
+    }
+    return static_cast<float>(0.5 * (low + high));
+}
+
 double knot(std::size_t k) { return std::ldexp(1.0 + 0.25 * double(k % 4), kFirstOctave + int(k / 4)); }
 
 } // namespace
@@ -198,7 +211,7 @@ AcdfPartnerRecord FilledRows::record(std::size_t bin, const std::vector<float>& 
                                                    static_cast<float>(ours) * row[t] / cosine[t] * scale_[t])};
         return out / (1.0 - share);
     };
-    return {least_share(moment, 7), irradiance};
+    return {least_share(moment), irradiance};
 }
 
 } // namespace acdf::compress

@@ -39,7 +39,6 @@ private:
     std::vector<float> cosines(const BlockMoments& light, const Normals& normals) const;
     RowParts own(const std::vector<std::vector<FilledCell>>& cells) const;
     void add_mixture(std::size_t mixture, const RowParts& rows, float* falls, float& mean) const;
-    const float* falls_of(std::size_t tile) const;
 
     const std::vector<HalvedBox>& tiles_;
     const NormalBins& bins_;

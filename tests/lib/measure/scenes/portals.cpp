@@ -144,7 +144,7 @@ TEST(Visibility, IsKnownAtCachePoints) {
     const Yard yard;
     const Target target = probe();
     const TilingOnTheFly tiling(target, 16, 8);
-    const VisibilityCache cache(tiling, yard.points, {});
+    const VisibilityCache cache(tiling, yard.points);
     EXPECT_GT(cache.size(), 10u);
     EXPECT_LT(cache.size(), yard.points.size() / 2);
     EXPECT_GT(cache.making().shadow_rays, 10u * cache.size());
