@@ -143,9 +143,11 @@ void encode_cell(const CellSums& sums, std::uint32_t portals, std::uint32_t piec
             all += sums.all[c];
             seen += sums.seen[c];
         }
-        const float points = std::max(sums.points, 1e-6f), prior = all > 0.0f ? std::sqrt(seen / all) : 0.7f;
+        const float points = std::max(sums.points, 1e-6f);
+        const VisibilityPrior prior{all > 0.0f ? seen / all : 0.5f, kCaution.prior};
         for (std::uint32_t c = k * pieces; c < (k + 1) * pieces; ++c)
-            *out++ = visibility_code(double{visible_factor(sums.all[c], sums.seen[c], points, prior, kCaution)});
+            *out++ =
+                visibility_code(double{visible_factor(sums.all[c], sums.seen[c], points, prior, kCaution.floor)});
     }
 }
 

@@ -53,10 +53,12 @@ struct VisibilityRows {
     std::vector<float> factors; ///< visible_factor
 };
 
-/// Shoots rays to `parts` from all points that count for the cells of `range`. Factors have the caution that serves
-/// best points that rows have not seen: each estimated from the others. `dark`: as of trace_visibility.
-VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityCells& tree,
-                               const VisibilityCells::Range& range, const std::vector<VisibleShare>& shares,
+/// Shoots rays to `parts`, which are those of `coarse` cut anew, from all points that count for the cells of
+/// `range`. Factors have the caution that serves best points that rows have not seen: each estimated from the
+/// others. `known`: of these cells. `dark`: as of trace_visibility.
+VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityParts& coarse,
+                               const std::vector<VisibilitySums>& known, const VisibilityCells& tree,
+                               std::uint32_t node, const std::vector<VisibleShare>& shares,
                                const std::vector<VisibilityPoint>& points, const Occluded& occluded, double dark);
 
 } // namespace acdf::compress
