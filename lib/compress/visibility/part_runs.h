@@ -3,6 +3,7 @@
 
 #include "compress/visibility/sums.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
