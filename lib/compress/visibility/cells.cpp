@@ -1,14 +1,17 @@
 #include "compress/visibility/cells.h"
 #include "compress/parallel.h"
+#include "compress/visibility/shared_odds.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <queue>
 
 namespace acdf::compress {
 namespace {
 
 constexpr std::uint32_t kBorders = 16;      ///< positions on an axis where a cell may be divided
+constexpr float kFloor = 0.02f;             ///< of factors, where it is divided
 constexpr float kLeastPoints = 8.0f;        ///< of a cell
 constexpr std::uint32_t kCellPoints = 1024; ///< points of a cell that decide where it is divided, about
 
@@ -20,7 +23,7 @@ double cost_of(const VisibilitySums& sums, const std::vector<float>& prior, std:
     float *const arrives = work.data(), *const sampled = arrives + count;
     const float points = sums.points;
     for (std::size_t p = 0; p < count; ++p) {
-        const float factor = visible_factor(all[p], seen[p], points, before[p], {});
+        const float factor = visible_factor(all[p], seen[p], points, {before[p] * before[p], 1.0f}, kFloor);
         arrives[p] = seen[p] / factor;
         sampled[p] = all[p] * factor;
     }
@@ -36,19 +39,16 @@ double cost_of(const VisibilitySums& sums, const std::vector<float>& prior, std:
 void accumulate(std::vector<VisibilitySums>& steps, bool from_below) {
     for (std::size_t i = 1; i < steps.size(); ++i) {
         const std::size_t k = from_below ? i : steps.size() - 1 - i;
-        const VisibilitySums& before = steps[from_below ? k - 1 : k + 1];
-        VisibilitySums& now = steps[k];
-        now.points += before.points;
-        for (std::size_t p = 0; p < now.all.size(); ++p) now.all[p] += before.all[p];
-        for (std::size_t p = 0; p < now.seen.size(); ++p) now.seen[p] += before.seen[p];
+        steps[k].add(steps[from_below ? k - 1 : k + 1]);
     }
 }
 
 } // namespace
 
-VisibilityCells::VisibilityCells(const VisibilityLight& light, const std::vector<VisibilityPoint>& points,
-                                 const Box& low, const Box& high, std::uint32_t cells)
-    : light_(light), points_(points) {
+VisibilityCells::VisibilityCells(const VisibilityParts& parts, const VisibilityLight& light,
+                                 const std::vector<VisibilityPoint>& points, const Box& low, const Box& high,
+                                 std::uint32_t cells)
+    : parts_(parts), light_(light), points_(points) {
     order_.resize(light.points());
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
     Node root;
@@ -84,9 +84,10 @@ VisibilityCells::VisibilityCells(const VisibilityLight& light, const std::vector
 void VisibilityCells::consider(Node& node) const {
     const std::uint32_t count = node.end - node.begin, stride = std::max(count / kCellPoints, 1u);
     VisibilitySums sums(light_.parts);
-    for (std::uint32_t i = node.begin; i < node.end; i += stride) sums.add(light_.of(order_[i]), 1.0f);
+    for (std::uint32_t i = node.begin; i < node.end; i += stride) sums.add(light_.of(order_[i]));
     for (std::size_t p = 0; p < light_.parts; ++p)
-        node.factors[p] = visible_factor(sums.all[p], sums.seen[p], sums.points, node.factors[p], {});
+        node.factors[p] = visible_factor(sums.all[p], sums.seen[p], sums.points,
+                                         {node.factors[p] * node.factors[p], 1.0f}, kFloor);
     node.gain = 0.0;
     if (node.depth + 1 >= ACDF_MAX_VISIBILITY_DEPTH || float(count) < 2.0f * kLeastPoints) return;
     std::array<Division, axes> best;
@@ -118,17 +119,20 @@ VisibilityCells::Division VisibilityCells::consider_axis(const Node& node, const
         auto k = static_cast<std::uint32_t>(std::clamp((x - low) / step, 0.0f, float(kBorders - 1)));
         while (k > 0 && x < border(k)) --k;
         while (k + 1 < kBorders && !(x < border(k + 1))) ++k;
-        lower[k].add(light_.of(order_[i]), 1.0f);
+        lower[k].add(light_.of(order_[i]));
     }
     std::vector<VisibilitySums> upper = lower;
     accumulate(lower, true);
     accumulate(upper, false);
     std::vector<float> work;
     const double whole = cost_of(sums, node.factors, work);
+    std::optional<SharedOdds> odds;
+    if (axis >= 3) odds.emplace(parts_, sums, node.factors);
     for (std::uint32_t k = 1; k < kBorders; ++k) {
         if (lower[k - 1].points < kLeastPoints || upper[k].points < kLeastPoints) continue;
+        const double together = odds ? std::max(whole, odds->cost(lower[k - 1]) + odds->cost(upper[k])) : whole;
         const double gain =
-            whole - cost_of(lower[k - 1], node.factors, work) - cost_of(upper[k], node.factors, work);
+            together - cost_of(lower[k - 1], node.factors, work) - cost_of(upper[k], node.factors, work);
         if (gain * stride > best.gain) best = {gain * stride, axis, border(k)};
     }
     return best;
@@ -142,7 +146,6 @@ void VisibilityCells::divide(std::uint32_t index) {
                               [&](std::uint32_t i) { return points_[i].coordinate(axis) < lower.position; });
     lower.end = upper.begin = static_cast<std::uint32_t>(middle - order_.begin());
     lower.high[axis] = upper.low[axis] = lower.position;
-    lower.parent = upper.parent = index;
     lower.depth = ++upper.depth;
     nodes_[index].first_child = static_cast<std::uint32_t>(nodes_.size());
     nodes_.push_back(std::move(lower));
@@ -162,7 +165,7 @@ void VisibilityCells::number(std::uint32_t node) {
     nodes_[node].cells.end = cell_count_;
 }
 
-std::vector<VisibilityCells::Range> VisibilityCells::regions(std::uint32_t count) const {
+std::vector<std::uint32_t> VisibilityCells::regions(std::uint32_t count) const {
     using Entry = std::pair<std::uint32_t, std::uint32_t>; // cells, and number from the back
     std::priority_queue<Entry> queue;
     const auto push = [&](std::uint32_t node) {
@@ -175,24 +178,18 @@ std::vector<VisibilityCells::Range> VisibilityCells::regions(std::uint32_t count
         push(child);
         push(child + 1);
     }
-    std::vector<Range> out;
-    for (; !queue.empty(); queue.pop()) out.push_back(nodes_[~queue.top().second].cells);
-    std::sort(out.begin(), out.end(), [](const Range& a, const Range& b) { return a.begin < b.begin; });
+    std::vector<std::uint32_t> out;
+    for (; !queue.empty(); queue.pop()) out.push_back(~queue.top().second);
+    std::sort(out.begin(), out.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return cells(a).begin < cells(b).begin; });
     return out;
 }
 
-VisibilityCells::Parts VisibilityCells::parts(const Range& range) const {
-    Parts out{std::vector<double>(light_.parts, 0.0), std::vector<double>(light_.parts, 0.0)};
+std::vector<VisibilitySums> VisibilityCells::sums(const Range& range) const {
+    std::vector<VisibilitySums> out(range.end - range.begin, VisibilitySums(light_.parts));
     for (std::uint32_t cell = range.begin; cell < range.end; ++cell) {
         const Node& node = nodes_[node_of_cell_[cell]];
-        VisibilitySums sums(light_.parts);
-        for (std::uint32_t i = node.begin; i < node.end; ++i) {
-            const float* given = light_.of(order_[i]);
-            sums.add(given, 1.0f);
-            for (std::size_t p = 0; p < light_.parts; ++p) out.light[p] += double{std::fabs(given[p])};
-        }
-        for (std::size_t p = 0; p < light_.parts; ++p)
-            out.loss[p] += std::sqrt(double{sums.seen[p]} * double{sums.all[p]}) - double{sums.seen[p]};
+        for (std::uint32_t i = node.begin; i < node.end; ++i) out[cell - range.begin].add(light_.of(order_[i]));
     }
     return out;
 }

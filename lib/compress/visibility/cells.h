@@ -11,34 +11,26 @@
 
 namespace acdf::compress {
 
-/// What is known of the parts in a cell: sums over its points.
-struct VisibilitySums {
-    std::vector<float> all, seen; ///< one a part
-    float points = 0.0f;
-
-    explicit VisibilitySums(std::size_t parts = 0) : all(parts, 0.0f), seen(parts, 0.0f) {}
-    /// One point's light, as VisibilityLight::given has it.
-    void add(const float* given, float weight) {
-        const std::size_t count = all.size();
-        float *const a = all.data(), *const s = seen.data();
-        points += weight;
-        for (std::size_t p = 0; p < count; ++p) a[p] += weight * std::fabs(given[p]);
-        for (std::size_t p = 0; p < count; ++p) s[p] += weight * (given[p] > 0.0f ? given[p] : 0.0f);
-    }
-};
-
 /// How much an estimate from few points is trusted.
 struct VisibilityCaution {
     float floor = 0.02f; ///< the least factor: such a share of the samples goes where the normal alone sends them
-    float prior = 1.0f;  ///< points that the factors of the cell around count as
+    float prior = 1.0f;  ///< times as many points count for what is known of the cells around
 };
 
-/// What rows are to multiply the light of a part with: the root of the share that arrives, which is best where
-/// parts are seen by some of a cell's points and not by others. `prior`: such a factor, of the cell around it.
-inline float visible_factor(float all, float seen, float points, float prior, const VisibilityCaution& caution) {
+/// What is known of a part beforehand: which share of it arrives, by so many points.
+struct VisibilityPrior {
+    float share, points;
+};
+inline float visible_share(float all, float seen, float points, const VisibilityPrior& prior) {
     constexpr float least = 1e-30f; // where nothing is known
-    const float unit = caution.prior * all / points + least, share = (seen + unit * prior * prior) / (all + unit);
-    return caution.floor + (1.0f - caution.floor) * std::sqrt(share < 1.0f ? share : 1.0f);
+    const float unit = prior.points * all / points + least;
+    return (seen + unit * prior.share) / (all + unit);
+}
+/// What rows are to multiply the light of a part with: the root of the share that arrives, which is best where
+/// parts are seen by some of a cell's points and not by others.
+inline float visible_factor(float all, float seen, float points, const VisibilityPrior& prior, float floor) {
+    const float share = visible_share(all, seen, points, prior);
+    return floor + (1.0f - floor) * std::sqrt(share < 1.0f ? share : 1.0f);
 }
 
 /// Cells, best first: each division is the one that lowers most, summed over points, the root of the second moment.
@@ -49,8 +41,9 @@ public:
 
     /// At most `cells` cells. `low`, `high`: the box of all. Points and light must outlive this. The same for any
     /// number of threads.
-    VisibilityCells(const VisibilityLight& light, const std::vector<VisibilityPoint>& points, const Box& low,
-                    const Box& high, std::uint32_t cells);
+    VisibilityCells(const VisibilityParts& parts, const VisibilityLight& light,
+                    const std::vector<VisibilityPoint>& points, const Box& low, const Box& high,
+                    std::uint32_t cells);
 
     std::uint32_t cell_count() const { return cell_count_; }
     /// In preorder, cells numbered in the order of the traversal.
@@ -59,23 +52,19 @@ public:
     struct Range {
         std::uint32_t begin = 0, end = 0;
     };
-    /// At most `count` ranges of all cells, each below a node of the tree; the largest are divided first.
-    std::vector<Range> regions(std::uint32_t count) const;
-    /// The cells below the one that a cell was divided from.
-    Range around(std::uint32_t cell) const { return nodes_[nodes_[node_of_cell_[cell]].parent].cells; }
-    /// Of each part, summed over the cells of a range.
-    struct Parts {
-        std::vector<double> loss;  ///< by how much its root of the second moment is larger than it were if all rays
-                                   ///< of a cell either arrived or did not
-        std::vector<double> light; ///< what it would give to the points
-    };
-    Parts parts(const Range& range) const;
+    /// At most `count` nodes of the tree that have all cells; the largest are divided first.
+    std::vector<std::uint32_t> regions(std::uint32_t count) const;
+    /// The cells below a node, and of several both halves.
+    const Range& cells(std::uint32_t node) const { return nodes_[node].cells; }
+    std::uint32_t half(std::uint32_t node, std::uint32_t k) const { return nodes_[node].first_child + k; }
+    /// What the points of each cell of a range are given.
+    std::vector<VisibilitySums> sums(const Range& range) const;
 
 private:
     struct Node {
         Box low{}, high{};
         std::uint32_t begin = 0, end = 0; ///< its points
-        std::uint32_t first_child = 0, depth = 0, axis = 0, parent = 0;
+        std::uint32_t first_child = 0, depth = 0, axis = 0;
         Range cells;
         float position = 0.0f;
         double gain = 0.0;
@@ -94,6 +83,7 @@ private:
     void number(std::uint32_t node);
     double thinnest(std::uint32_t node, std::uint32_t axis, bool at_low) const;
 
+    const VisibilityParts& parts_;
     const VisibilityLight& light_;
     const std::vector<VisibilityPoint>& points_;
     std::vector<Node> nodes_;

@@ -24,7 +24,7 @@ constexpr double kColumnsBesidePortals = 31.0;
 constexpr std::uint64_t kCellsOfRegion = 200;
 /// Points of a cell, in the mean: those that decide where it is divided and those for its row; rounds in which
 /// the first are found; and candidates for each.
-constexpr std::size_t kPointsOfDivision = 40, kPointsOfRow = 80;
+constexpr std::size_t kPointsOfDivision = 32, kPointsOfRow = 56;
 constexpr std::uint32_t kRounds = 3;
 constexpr std::uint64_t kCandidates = 24;
 /// Of the time, for progress: what it takes to find cells, before rows.
@@ -89,13 +89,18 @@ public:
                 if (cell[i] >= cells || of_cell[cell[i]] >= quota) continue;
                 ++of_cell[cell[i]];
                 points_.push_back(candidates[i]);
+                cells_.push_back(cell[i]);
             }
         }
     }
 
+    /// Where each point was found to lie when it was added.
+    const std::vector<std::uint32_t>& cells() const { return cells_; }
+
 private:
     const PointSource& source_;
     std::vector<VisibilityPoint>& points_;
+    std::vector<std::uint32_t> cells_;
     std::uint64_t next_ = 0;
 };
 
@@ -145,10 +150,15 @@ void divide(DividedVisibility& out, const VisibilityParts& parts, const Visibili
         const std::uint32_t shift = 2 * (kRounds - 1 - round); // a quarter of points and cells before, and so on
         add(kPointsOfDivision * std::size_t{cells} >> shift);
         const double share = std::ldexp(1.0, -int(shift)); // of all
-        trace_visibility(parts, out.points, scene.occluded, out.light, -1.0,
+        std::vector<Ray> expected;
+        if (out.tree) expected = parts.expect(parts, out.tree->sums({0, out.tree->cell_count()}));
+        const ExpectedRays rays = [&](std::size_t i) {
+            return expected.empty() ? nullptr : &expected[points.cells()[i] * parts.count()];
+        };
+        trace_visibility(parts, out.points, scene.occluded, rays, out.light, -1.0,
                          [&](double done) { report(before + 0.8 * (share - before) * done); });
-        out.tree =
-            std::make_unique<VisibilityCells>(out.light, out.points, low, high, std::max(cells >> shift, 1u));
+        out.tree = std::make_unique<VisibilityCells>(parts, out.light, out.points, low, high,
+                                                     std::max(cells >> shift, 1u));
         out.splits = out.tree->splits();
         report(before = share);
     }
@@ -176,23 +186,24 @@ std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, co
     division.header = header_of(scene.points, frame);
     divide(division, coarse, scene, counts.cells, [&](double share) { report(kDivisionShare * share); });
     const VisibilityCells& tree = *division.tree;
-    const std::vector<VisibilityCells::Range> regions = tree.regions(counts.regions);
-    const std::vector<VisibleShare> shares =
-        shares_of(CellNumbers(division.header, division.splits, tree.cell_count()), division.points);
+    const std::vector<std::uint32_t> regions = tree.regions(counts.regions);
+    const PointsOfCells of =
+        points_of_cells(CellNumbers(division.header, division.splits, tree.cell_count()), division.points);
 
     std::vector<AcdfColumn> columns(regions.size() * coarse.column_count());
     std::vector<std::uint16_t> set_of_row(tree.cell_count());
     std::vector<std::uint8_t> rows(tree.cell_count() * width);
     std::atomic<std::size_t> done{0};
     parallel_for(std::size_t{0}, regions.size(), [&](std::size_t r) {
-        const VisibilityCells::Parts own_parts = tree.parts(regions[r]);
-        const VisibilityParts parts(coarse, own_parts.loss, own_parts.light);
-        const VisibilityRows told =
-            visibility_rows(parts, tree, regions[r], shares, division.points, scene.occluded, division.light.dark);
+        const VisibilityCells::Range& cells = tree.cells(regions[r]);
+        const std::vector<VisibilitySums> known = tree.sums(cells);
+        const VisibilityParts parts(coarse, known);
+        const VisibilityRows told = visibility_rows(parts, coarse, known, tree, regions[r], of, division.points,
+                                                    scene.occluded, division.light.dark);
         const std::vector<AcdfColumn>& own = parts.columns();
         std::copy(own.begin(), own.end(), columns.begin() + std::ptrdiff_t(r * own.size()));
-        for (std::uint32_t cell = regions[r].begin; cell < regions[r].end; ++cell) {
-            const std::size_t first = (cell - regions[r].begin) * parts.count();
+        for (std::uint32_t cell = cells.begin; cell < cells.end; ++cell) {
+            const std::size_t first = (cell - cells.begin) * parts.count();
             encode_visibility(parts, &told.all[first], &told.factors[first], &rows[cell * width]);
             set_of_row[cell] = static_cast<std::uint16_t>(r);
         }
@@ -208,7 +219,7 @@ std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, co
     if (chunk.header.further_sets == 0) chunk.set_of_row.clear();
     std::vector<Chunk> chunks{chunk.stored()};
     if (portals)
-        chunks.push_back(portal_chunk(local, *portals, shares, division.points, tree.cell_count(), scene.occluded));
+        chunks.push_back(portal_chunk(local, *portals, of, division.points, tree.cell_count(), scene.occluded));
     report(1.0);
     return chunks;
 }

@@ -66,11 +66,14 @@ struct VisibilityScene {
     explicit operator bool() const { return points && occluded; }
 };
 
+/// The rays of a point, one a part, as those near it let expect; null where nothing is.
+using ExpectedRays = std::function<const Ray*(std::size_t point)>;
+
 /// Shoots a ray for each point and part that is above its horizon, from the points on that `light` does not know
-/// yet. `dark`: of other points of the scene; below 0: as it is found of all these. The same for any number of
-/// threads.
+/// yet; where one is expected, and the part gives little, one in four is shot. `dark`: of other points of the
+/// scene; below 0: as it is found of all these. The same for any number of threads.
 void trace_visibility(const VisibilityParts& parts, const std::vector<VisibilityPoint>& points,
-                      const Occluded& occluded, VisibilityLight& light, double dark = -1.0,
-                      const std::function<void(double)>& progress = {});
+                      const Occluded& occluded, const ExpectedRays& expected, VisibilityLight& light,
+                      double dark = -1.0, const std::function<void(double)>& progress = {});
 
 } // namespace acdf::compress

@@ -7,15 +7,6 @@
 namespace acdf::compress {
 namespace {
 
-/// Tiles that follow each other: what they are worth to be told apart from others, and their solid angle.
-struct Run {
-    double worth, angle;
-
-    /// An edge of what hides light crosses it the more likely the wider it is.
-    double cost() const { return worth * std::sqrt(angle); }
-};
-Run operator+(const Run& a, const Run& b) { return {a.worth + b.worth, a.angle + b.angle}; }
-
 /// The bits of a number below 2^6 in reverse, over 2^6: van der Corput.
 double reversed(std::uint32_t k) {
     double out = 0.0, digit = 0.5;
@@ -28,53 +19,55 @@ double reversed(std::uint32_t k) {
 VisibilityParts::VisibilityParts(const AcdfLocal& local, std::uint32_t bins, std::uint32_t columns)
     : local_(local), rows_(*local.rows_of_normals), grid_(acdf_environment_grid(&local.environment)),
       light_(mean_tiles(bins)) {
-    cut(light_, light_, columns);
+    std::vector<Spread> edges;
+    for (std::uint32_t tile = 0; tile < light_.size(); ++tile) edges.push_back(spread(tile, light_[tile]));
+    PartRuns runs(std::move(edges));
+    cut(runs, light_, columns);
 }
 
-VisibilityParts::VisibilityParts(const VisibilityParts& coarse, const std::vector<double>& loss,
-                                 const std::vector<double>& light)
+VisibilityParts::VisibilityParts(const VisibilityParts& coarse, const std::vector<VisibilitySums>& cells)
     : local_(coarse.local_), rows_(coarse.rows_), grid_(coarse.grid_), light_(coarse.light_) {
-    constexpr double kElsewhere = 0.02; // of all: where no ray has found an edge there may be one
-    double sum = 0.0;
-    for (std::size_t p = 0; p < coarse.count(); ++p) sum += loss[p];
-    double all = 0.0;
-    for (const double light : light_) all += light;
-    std::vector<double> worth(light_.size(), 0.0), given(light_.size(), 0.0);
-    for (std::size_t p = 0; p < coarse.count(); ++p) {
-        double own = 0.0;
-        for (std::uint32_t tile = coarse.first_[p]; tile < coarse.first_[p + 1]; ++tile) own += light_[tile];
-        for (std::uint32_t tile = coarse.first_[p]; tile < coarse.first_[p + 1]; ++tile)
-            given[tile] = own > 0.0 ? light[p] * light_[tile] / own : 0.0;
-        for (std::uint32_t tile = coarse.first_[p]; tile < coarse.first_[p + 1]; ++tile)
-            worth[tile] = (sum > 0.0 && own > 0.0 ? loss[p] / sum * light_[tile] / own : 0.0) +
-                          kElsewhere * light_[tile] / all;
+    constexpr double kElsewhere = 0.05; // of all: where no ray has found an edge there may be one
+    struct Part {
+        double loss = 0.0, given = 0.0, width = 0.0;
+        std::vector<double> shares; // of its tiles
+    };
+    std::vector<Part> parts(coarse.count());
+    double edges = 0.0, whole = 0.0;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        Part& part = parts[p];
+        for (const VisibilitySums& cell : cells) {
+            part.loss += std::sqrt(double{cell.seen[p]} * double{cell.all[p]}) - double{cell.seen[p]};
+            part.given += double{cell.all[p]};
+        }
+        const auto first = light_.begin() + coarse.first_[p], end = light_.begin() + coarse.first_[p + 1];
+        const double own = std::accumulate(first, end, 0.0);
+        Spread spread;
+        for (auto light = first; light != end; ++light) {
+            part.shares.push_back(own > 0.0 ? *light / own : 0.0);
+            spread.add(this->spread(static_cast<std::uint32_t>(light - light_.begin()), part.shares.back()));
+        }
+        part.width = part.given * spread.width();
+        edges += part.loss;
+        whole += part.width;
     }
-    cut(worth, given, coarse.column_count());
+    std::vector<Spread> spreads;
+    std::vector<double> light;
+    for (const Part& part : parts)
+        for (const double share : part.shares) {
+            const double density = (part.width > 0.0 ? part.loss / part.width : 0.0) +
+                                   (whole > 0.0 ? kElsewhere * edges / whole : 1.0);
+            light.push_back(part.given * share);
+            spreads.push_back(spread(static_cast<std::uint32_t>(spreads.size()), light.back() * density));
+        }
+    PartRuns runs(std::move(spreads));
+    for (std::size_t p = 0; p < parts.size(); ++p) runs.know(cells, p, coarse.first_[p], parts[p].shares);
+    cut(runs, light, coarse.column_count());
 }
 
-/// Joins neighbours, those that cost least first, until no more parts are left.
-void VisibilityParts::cut(const std::vector<double>& worth, const std::vector<double>& light,
-                          std::uint32_t columns) {
-    std::vector<Run> runs;
-    for (std::uint32_t tile = 0; tile < worth.size(); ++tile) {
-        runs.push_back({worth[tile], solid_angle(tile)});
-        first_.push_back(tile);
-    }
-    const auto rise = [&](std::size_t i) {
-        return (runs[i] + runs[i + 1]).cost() - runs[i].cost() - runs[i + 1].cost();
-    };
-    std::vector<double> rises;
-    for (std::size_t i = 0; i + 1 < runs.size(); ++i) rises.push_back(rise(i));
-    while (runs.size() > std::size_t{columns} + 1) {
-        const auto least = static_cast<std::size_t>(std::min_element(rises.begin(), rises.end()) - rises.begin());
-        const auto next = static_cast<std::ptrdiff_t>(least) + 1;
-        runs[least] = runs[least] + runs[least + 1];
-        runs.erase(runs.begin() + next);
-        first_.erase(first_.begin() + next);
-        rises.erase(rises.begin() + next - 1);
-        if (least > 0) rises[least - 1] = rise(least - 1);
-        if (least < rises.size()) rises[least] = rise(least);
-    }
+/// Parts and columns; `light`: of tiles, which columns halve.
+void VisibilityParts::cut(PartRuns& runs, const std::vector<double>& light, std::uint32_t columns) {
+    first_ = runs.join(std::size_t{columns} + 1);
     first_.push_back(rows_.splits + 1);
     std::vector<double> before{0.0};
     for (std::size_t p = 0; p < count(); ++p)
@@ -125,6 +118,13 @@ double VisibilityParts::solid_angle(std::uint32_t tile) const {
     return acdf_grid_solid_angle(&grid_, range);
 }
 
+/// Light of a tile, spread as over a disk of its size.
+Spread VisibilityParts::spread(std::uint32_t tile, double light) const {
+    const std::array<float, 3> middle = place(tile, 0.5, 0.5);
+    const double length = light * (1.0 - solid_angle(tile) / (4.0 * ACDF_PI));
+    return {light, {length * double{middle[0]}, length * double{middle[1]}, length * double{middle[2]}}};
+}
+
 std::array<float, 3> VisibilityParts::place(std::uint32_t tile, double u0, double u1) const {
     double u[2] = {u0, u1};
     const AcdfDirectionSample s =
@@ -171,6 +171,21 @@ bool VisibilityParts::find(const float direction[3], std::uint32_t& part) const 
     const std::uint32_t tile = acdf_rows_find_tile(&rows_, square);
     part = static_cast<std::uint32_t>(std::upper_bound(first_.begin(), first_.end(), tile) - first_.begin() - 1);
     return true;
+}
+
+std::vector<Ray> VisibilityParts::expect(const VisibilityParts& coarse,
+                                         const std::vector<VisibilitySums>& cells) const {
+    std::vector<Ray> out;
+    out.reserve(cells.size() * count());
+    for (const VisibilitySums& cell : cells)
+        for (std::size_t p = 0, first = 0; p < count(); ++p) {
+            while (coarse.first_[first + 1] <= first_[p]) ++first;
+            Ray ray = cell.ray(first);
+            for (std::size_t more = first + 1; more < coarse.count() && coarse.first_[more] < first_[p + 1]; ++more)
+                if (cell.ray(more) != ray) ray = Ray::unknown;
+            out.push_back(ray);
+        }
+    return out;
 }
 
 void VisibilityParts::weigh(const AcdfLocalPoint& point, float* out) const {

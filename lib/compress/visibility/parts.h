@@ -1,6 +1,8 @@
 // The parts of the sphere that visibility cells weigh.
 #pragma once
 
+#include "compress/visibility/part_runs.h"
+
 #include <acdf/local.h>
 
 #include <array>
@@ -18,10 +20,12 @@ public:
     /// Cuts at most at `columns` tiles: so that parts have as much light, and room for an edge, as others.
     /// `local`, which has rows of halvings, must outlive this.
     VisibilityParts(const AcdfLocal& local, std::uint32_t bins, std::uint32_t columns);
-    /// Cuts as often where most of `loss` lies, and orders columns by `light`, of which a part of `coarse` has so
-    /// much. `coarse` may go.
-    VisibilityParts(const VisibilityParts& coarse, const std::vector<double>& loss,
-                    const std::vector<double>& light);
+    /// Cuts as often between what `cells` see of the parts of `coarse`, and most where they see edges. Orders
+    /// columns by the light of these cells. `coarse` may go.
+    VisibilityParts(const VisibilityParts& coarse, const std::vector<VisibilitySums>& cells);
+
+    /// Cells x parts: what all parts of `coarse` that a part has tiles of let expect, by what cells see of them.
+    std::vector<Ray> expect(const VisibilityParts& coarse, const std::vector<VisibilitySums>& cells) const;
 
     const AcdfLocal& local() const { return local_; }
     std::size_t count() const { return first_.size() - 1; }
@@ -31,6 +35,13 @@ public:
     /// The part that begins at the tile of each column.
     const std::vector<std::uint32_t>& part_of_column() const { return part_of_column_; }
     std::uint32_t column_count() const { return static_cast<std::uint32_t>(count() - 1); }
+
+    /// visit(first, middle, end) of all columns, in preorder: one parts [first, end) at `middle`.
+    template <class Visit>
+    void for_each_column(const Visit& visit) const {
+        std::size_t column = 0;
+        for_each_column(0, count(), column, visit);
+    }
 
     /// What of its light a normal gives to each part, by the stored rows; the sum is its irradiance over `total`.
     void weigh(const AcdfLocalPoint& point, float* out) const;
@@ -47,8 +58,17 @@ public:
     }
 
 private:
+    template <class Visit>
+    void for_each_column(std::size_t first, std::size_t end, std::size_t& column, const Visit& visit) const {
+        if (end - first < 2) return;
+        const std::size_t middle = part_of_column_[column++];
+        visit(first, middle, end);
+        for_each_column(first, middle, column, visit);
+        for_each_column(middle, end, column, visit);
+    }
     std::vector<double> mean_tiles(std::uint32_t bins) const;
-    void cut(const std::vector<double>& worth, const std::vector<double>& light, std::uint32_t columns);
+    Spread spread(std::uint32_t tile, double light) const;
+    void cut(PartRuns& runs, const std::vector<double>& light, std::uint32_t columns);
     void order(const std::vector<double>& before, std::uint32_t first, std::uint32_t end, std::uint32_t depth);
     void aim();
     std::array<float, 3> place(std::uint32_t tile, double u0, double u1) const;

@@ -19,8 +19,6 @@ constexpr double kLeastOfRow = 0.02, kMostOfRow = 0.9;
 /// not decide alone.
 constexpr double kDark = 0.1;
 constexpr std::size_t kAsked = 4096;
-/// Cells whose points are looked at together.
-constexpr std::uint32_t kCells = 128;
 
 /// Numbers in [0, 1), evenly spread over `index` for each `stream` (Roberts 2018).
 double spread(std::uint64_t index, std::uint64_t stream, double step) {
@@ -143,9 +141,11 @@ void encode_cell(const CellSums& sums, std::uint32_t portals, std::uint32_t piec
             all += sums.all[c];
             seen += sums.seen[c];
         }
-        const float points = std::max(sums.points, 1e-6f), prior = all > 0.0f ? std::sqrt(seen / all) : 0.7f;
+        const float points = std::max(sums.points, 1e-6f);
+        const VisibilityPrior prior{all > 0.0f ? seen / all : 0.5f, kCaution.prior};
         for (std::uint32_t c = k * pieces; c < (k + 1) * pieces; ++c)
-            *out++ = visibility_code(double{visible_factor(sums.all[c], sums.seen[c], points, prior, kCaution)});
+            *out++ =
+                visibility_code(double{visible_factor(sums.all[c], sums.seen[c], points, prior, kCaution.floor)});
     }
 }
 
@@ -169,34 +169,19 @@ double mean_light(const PortalRays& rays, const PortalSet& set, const std::vecto
     return mean;
 }
 
-/// Sums over the points of cells from `begin` on, of which each is looked at once.
-std::vector<CellSums> sum_up_cells(const PortalRays& rays, const std::vector<VisibleShare>& shares,
-                                   const std::vector<VisibilityPoint>& points, std::uint32_t begin,
-                                   std::uint32_t end, std::size_t parts, double dark) {
-    const auto first_of = [&](std::uint32_t cell) {
-        return std::lower_bound(shares.begin(), shares.end(), cell,
-                                [](const VisibleShare& s, std::uint32_t c) { return s.cell < c; });
-    };
-    const auto first = first_of(begin), last = first_of(end);
-    std::vector<std::uint32_t> numbers;
-    for (auto share = first; share != last; ++share) numbers.push_back(share->point);
-    std::sort(numbers.begin(), numbers.end());
-    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-    std::vector<PortalLight> lights;
-    for (const std::uint32_t number : numbers) lights.push_back(rays.trace(number, points[number]));
-    std::vector<CellSums> out(end - begin, {std::vector<float>(parts, 0.0f), std::vector<float>(parts, 0.0f)});
-    for (auto share = first; share != last; ++share) {
-        const auto found = std::lower_bound(numbers.begin(), numbers.end(), share->point);
-        const PortalLight& light = lights[static_cast<std::size_t>(found - numbers.begin())];
+CellSums sum_up_cell(const PortalRays& rays, const PointsOfCells& of, const std::vector<VisibilityPoint>& points,
+                     std::uint32_t cell, std::size_t parts, double dark) {
+    CellSums out{std::vector<float>(parts, 0.0f), std::vector<float>(parts, 0.0f)};
+    for (std::uint32_t i = of.first[cell]; i < of.first[cell + 1]; ++i) {
+        const PortalLight light = rays.trace(of.point[i], points[of.point[i]]);
         const double all = double{light.all()};
         if (!(all > 0.0)) continue; // as of what is inside of something
-        const auto weight = static_cast<float>(double{share->weight} / std::sqrt(all * all + dark * dark));
-        CellSums& sums = out[share->cell - begin];
-        sums.points += share->weight;
-        sums.other += double{weight * light.other};
+        const auto weight = static_cast<float>(1.0 / std::sqrt(all * all + dark * dark));
+        out.points += 1.0f;
+        out.other += double{weight * light.other};
         for (std::size_t p = 0; p < parts; ++p) {
-            sums.all[p] += weight * std::fabs(light.given[p]);
-            sums.seen[p] += weight * std::max(light.given[p], 0.0f);
+            out.all[p] += weight * std::fabs(light.given[p]);
+            out.seen[p] += weight * std::max(light.given[p], 0.0f);
         }
     }
     return out;
@@ -210,18 +195,15 @@ void append_all(std::vector<std::uint8_t>& bytes, const std::vector<Record>& rec
 
 } // namespace
 
-Chunk portal_chunk(const AcdfLocal& local, const PortalSet& set, const std::vector<VisibleShare>& shares,
+Chunk portal_chunk(const AcdfLocal& local, const PortalSet& set, const PointsOfCells& of,
                    const std::vector<VisibilityPoint>& points, std::uint32_t cells, const Occluded& occluded) {
     const std::size_t width = set.row_bytes();
     const PortalRays rays(local, set, occluded);
     const double dark = kDark * mean_light(rays, set, points);
     std::vector<std::uint8_t> rows(cells * width);
-    parallel_for(0u, (cells + kCells - 1) / kCells, [&](std::uint32_t block) {
-        const std::uint32_t begin = block * kCells, end = std::min(begin + kCells, cells);
-        const std::vector<CellSums> sums = sum_up_cells(rays, shares, points, begin, end, width - 1, dark);
-        for (std::uint32_t cell = begin; cell < end; ++cell)
-            encode_cell(sums[cell - begin], set.header.portal_count, set.header.pieces * set.header.pieces,
-                        &rows[cell * width]);
+    parallel_for(0u, cells, [&](std::uint32_t cell) {
+        encode_cell(sum_up_cell(rays, of, points, cell, width - 1, dark), set.header.portal_count,
+                    set.header.pieces * set.header.pieces, &rows[cell * width]);
     });
     Chunk chunk{ACDF_CHUNK_PORTALS, {}};
     append_all(chunk.bytes, std::vector<AcdfPortals>{set.header});

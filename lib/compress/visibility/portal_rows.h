@@ -10,9 +10,9 @@
 
 namespace acdf::compress {
 
-/// Chunk PORT, with a row a cell by rays from the points that count for it. The same for any number of threads.
+/// Chunk PORT, with a row a cell by rays from its points. The same for any number of threads.
 /// Throws std::invalid_argument where nothing arrives through a portal.
-Chunk portal_chunk(const AcdfLocal& local, const PortalSet& set, const std::vector<VisibleShare>& shares,
+Chunk portal_chunk(const AcdfLocal& local, const PortalSet& set, const PointsOfCells& of,
                    const std::vector<VisibilityPoint>& points, std::uint32_t cells, const Occluded& occluded);
 
 } // namespace acdf::compress

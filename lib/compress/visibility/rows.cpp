@@ -1,9 +1,10 @@
 #include "compress/visibility/rows.h"
 
-#include <tbb/parallel_sort.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace acdf::compress {
 namespace {
@@ -11,100 +12,129 @@ namespace {
 /// One of so many points is asked how well the others serve it.
 constexpr std::size_t kEach = 8;
 
-/// A range of cells and the points that count for them, both numbered from 0.
+/// What is known of a cell before its own points: the share of each part that arrives, and how many points that is
+/// worth.
+struct Prior {
+    std::vector<float> shares;
+    float points = 0.0f;
+};
+
+/// A range of cells and their points, cell by cell, both numbered from 0.
 struct Region {
     std::vector<VisibilityPoint> points;
-    std::vector<VisibleShare> shares;
-    std::vector<VisibilitySums> sums;       ///< one a cell
-    std::vector<std::vector<float>> priors; ///< of the cells around it, one a cell
+    std::vector<std::uint32_t> cells; ///< one a point
+    std::vector<VisibilitySums> sums; ///< one a cell
+    std::vector<Prior> priors;        ///< one a cell
 };
 
 /// All of a region that is known before its light.
-Region region_of(const VisibilityCells::Range& range, const std::vector<VisibleShare>& shares,
+Region region_of(const VisibilityCells::Range& range, const PointsOfCells& of,
                  const std::vector<VisibilityPoint>& points) {
-    const auto first = [&](std::uint32_t cell) {
-        return std::lower_bound(shares.begin(), shares.end(), cell,
-                                [](const VisibleShare& s, std::uint32_t c) { return s.cell < c; });
-    };
     Region out;
-    out.shares.assign(first(range.begin), first(range.end));
-    std::vector<std::uint32_t> numbers;
-    for (const VisibleShare& share : out.shares) numbers.push_back(share.point);
-    std::sort(numbers.begin(), numbers.end());
-    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-    for (VisibleShare& share : out.shares) {
-        share.cell -= range.begin;
-        share.point = static_cast<std::uint32_t>(std::lower_bound(numbers.begin(), numbers.end(), share.point) -
-                                                 numbers.begin());
-    }
-    for (const std::uint32_t number : numbers) out.points.push_back(points[number]);
+    for (std::uint32_t cell = range.begin; cell < range.end; ++cell)
+        for (std::uint32_t i = of.first[cell]; i < of.first[cell + 1]; ++i) {
+            out.points.push_back(points[of.point[i]]);
+            out.cells.push_back(cell - range.begin);
+        }
+    out.sums.resize(range.end - range.begin);
+    out.priors.resize(range.end - range.begin);
     return out;
 }
 
-void sum_up(Region& region, const VisibilityLight& light, const VisibilityCells::Range& range) {
-    region.sums.assign(range.end - range.begin, VisibilitySums(light.parts));
-    for (const VisibleShare& s : region.shares) region.sums[s.cell].add(light.of(s.point), s.weight);
+/// Whether a point is asked how well the others serve it.
+bool is_asked(std::size_t point) { return point % kEach == 0; }
+
+/// Of all points of each cell, or of those that are not asked.
+void sum_up(Region& region, const VisibilityLight& light, bool all) {
+    for (VisibilitySums& sums : region.sums) sums = VisibilitySums(light.parts);
+    for (std::size_t i = 0; i < region.points.size(); ++i)
+        if (all || !is_asked(i)) region.sums[region.cells[i]].add(light.of(i));
 }
 
-/// Factors of the cells around each, as far as they are of the region.
-void find_priors(Region& region, const VisibilityCells& tree, const VisibilityCells::Range& range,
-                 std::size_t parts) {
-    constexpr float kUnknown = 0.7f; // half of it arrives
-    region.priors.clear();
-    for (std::uint32_t cell = range.begin; cell < range.end; ++cell) {
-        const VisibilityCells::Range around = tree.around(cell);
-        VisibilitySums sums(parts);
-        for (std::uint32_t c = std::max(around.begin, range.begin); c < std::min(around.end, range.end); ++c) {
-            const VisibilitySums& one = region.sums[c - range.begin];
-            sums.points += one.points;
-            for (std::size_t p = 0; p < parts; ++p) {
-                sums.all[p] += one.all[p];
-                sums.seen[p] += one.seen[p];
-            }
-        }
-        std::vector<float> prior(parts);
-        for (std::size_t p = 0; p < parts; ++p)
-            prior[p] = visible_factor(sums.all[p], sums.seen[p], std::max(sums.points, 1.0f), kUnknown, {});
-        region.priors.push_back(std::move(prior));
+/// How many points what is known of a cell counts as for its two halves: the more the less these differ, beside
+/// what they would by chance. By the method of moments for beta-binomial counts, of all parts together.
+float prior_points(const VisibilitySums& a, const VisibilitySums& b) {
+    constexpr float kFewest = 1.0f, kMost = 32.0f;
+    const float points = a.points + b.points;
+    if (!(a.points > 0.0f && b.points > 0.0f && points > 1.5f)) return kMost;
+    const float both = a.points * b.points / points;
+    double spread = 0.0, chance = 0.0;
+    for (std::size_t p = 0; p < a.all.size(); ++p) {
+        const float all = a.all[p] + b.all[p], seen = a.seen[p] + b.seen[p];
+        if (!(a.all[p] > 0.0f && b.all[p] > 0.0f && seen > 0.0f && seen < all)) continue;
+        const float share = seen / all, own = share * (1.0f - share) * points / (points - 1.0f);
+        const float difference = a.seen[p] / a.all[p] - b.seen[p] / b.all[p];
+        chance += double{all * own};
+        spread += 0.5 * double{all * (difference * difference - own / both)};
     }
+    if (!(chance > 0.0 && spread > 0.0)) return kMost;
+    return std::clamp(static_cast<float>(chance / spread) - 1.0f, kFewest, kMost);
 }
 
-/// The light of each point by what its cells see of each part: one ray a part shows little of it, and what a rare
+VisibilitySums sum_of(const Region& region, const VisibilityCells::Range& range, std::uint32_t first) {
+    VisibilitySums out = region.sums[range.begin - first];
+    for (std::uint32_t c = range.begin + 1; c < range.end; ++c) out.add(region.sums[c - first]);
+    return out;
+}
+
+/// What is known of the cells below a node before their own points: `shares` of the node itself, by as many points.
+void find_priors(Region& region, const VisibilityCells& tree, std::uint32_t node, std::uint32_t first,
+                 const std::vector<float>& shares, float points) {
+    const VisibilityCells::Range range = tree.cells(node);
+    if (range.end - range.begin == 1) {
+        region.priors[range.begin - first] = {shares, points};
+        return;
+    }
+    const VisibilitySums side[2] = {sum_of(region, tree.cells(tree.half(node, 0)), first),
+                                    sum_of(region, tree.cells(tree.half(node, 1)), first)};
+    VisibilitySums sums = side[0];
+    sums.add(side[1]);
+    std::vector<float> own(shares.size());
+    for (std::size_t p = 0; p < own.size(); ++p)
+        own[p] = visible_share(sums.all[p], sums.seen[p], std::max(sums.points, 1.0f), {shares[p], points});
+    const float next = prior_points(side[0], side[1]);
+    for (std::uint32_t k = 0; k < 2; ++k) find_priors(region, tree, tree.half(node, k), first, own, next);
+}
+
+/// The light of each point by what its cell sees of each part: one ray a part shows little of it, and what a rare
 /// ray finds must not count as the light of all.
 void rescale_by_cells(VisibilityLight& light, const Region& region) {
-    std::vector<double> arrives(light.points(), 0.0), weight(light.points(), 0.0);
-    for (const VisibleShare& share : region.shares) {
-        const VisibilitySums& cell = region.sums[share.cell];
-        const float* given = light.of(share.point);
-        double sum = 0.0;
+    for (std::size_t i = 0; i < region.points.size(); ++i) {
+        if (!(light.scale[i] > 0.0)) continue;
+        const VisibilitySums& cell = region.sums[region.cells[i]];
+        const float* given = light.of(i);
+        double arrives = 0.0;
         for (std::size_t p = 0; p < light.parts; ++p)
-            if (cell.all[p] > 0.0f) sum += double{std::fabs(given[p]) * (cell.seen[p] / cell.all[p])};
-        arrives[share.point] += double{share.weight} * sum;
-        weight[share.point] += double{share.weight}; // below 1 where a point is mixed with other regions
+            if (cell.all[p] > 0.0f) arrives += double{std::fabs(given[p]) * (cell.seen[p] / cell.all[p])};
+        light.rescale(i, arrives / light.scale[i]);
     }
-    for (std::size_t i = 0; i < arrives.size(); ++i)
-        if (light.scale[i] > 0.0 && weight[i] > 0.0) light.rescale(i, arrives[i] / weight[i] / light.scale[i]);
 }
 
-/// The second moment of points, each estimated from the others of its cells.
-double moment_of_others(const Region& region, const VisibilityLight& light, const VisibilityCaution& caution) {
+std::vector<float> factors_of(const Region& region, std::size_t cell, const VisibilityCaution& caution) {
+    const VisibilitySums& known = region.sums[cell];
+    const Prior& prior = region.priors[cell];
+    std::vector<float> out;
+    for (std::size_t p = 0; p < known.all.size(); ++p)
+        out.push_back(visible_factor(known.all[p], known.seen[p], std::max(known.points, 1e-6f),
+                                     {prior.shares[p], prior.points * caution.prior}, caution.floor));
+    return out;
+}
+
+/// The second moment of the points that are asked, of factors that the others give.
+double moment_of_asked(const Region& region, const VisibilityLight& light, const VisibilityCaution& caution) {
     double moment = 0.0;
-    for (const VisibleShare& share : region.shares) {
-        if (share.point % kEach != 0) continue;
-        const VisibilitySums& cell = region.sums[share.cell];
-        const std::vector<float>& prior = region.priors[share.cell];
-        const float* given = light.of(share.point);
-        const float others = std::max(cell.points - share.weight, 1e-6f);
+    std::vector<float> factors;
+    std::size_t cell = region.sums.size(); // of the factors; points of a cell come together
+    for (std::size_t i = 0; i < region.points.size(); ++i) {
+        if (!is_asked(i)) continue;
+        if (region.cells[i] != cell) factors = factors_of(region, cell = region.cells[i], caution);
+        const float* given = light.of(i);
         double arrives = 0.0, sampled = 0.0;
         for (std::size_t p = 0; p < light.parts; ++p) {
-            const float all = std::fabs(given[p]), seen = std::max(given[p], 0.0f);
-            const float factor =
-                visible_factor(std::max(cell.all[p] - share.weight * all, 0.0f),
-                               std::max(cell.seen[p] - share.weight * seen, 0.0f), others, prior[p], caution);
-            arrives += double{seen / factor};
-            sampled += double{all * factor};
+            arrives += double{std::max(given[p], 0.0f) / factors[p]};
+            sampled += double{std::fabs(given[p]) * factors[p]};
         }
-        moment += double{share.weight} * arrives * sampled;
+        moment += arrives * sampled;
     }
     return moment;
 }
@@ -112,10 +142,10 @@ double moment_of_others(const Region& region, const VisibilityLight& light, cons
 VisibilityCaution best_caution(const Region& region, const VisibilityLight& light) {
     VisibilityCaution best;
     double least = -1.0;
-    for (const float floor : {0.001f, 0.003f, 0.01f, 0.03f, 0.1f})
+    for (const float floor : {0.0003f, 0.001f, 0.003f, 0.01f, 0.03f, 0.1f})
         for (const float prior : {0.5f, 1.0f, 2.0f}) {
             const VisibilityCaution caution{floor, prior};
-            const double moment = moment_of_others(region, light, caution);
+            const double moment = moment_of_asked(region, light, caution);
             if (least >= 0.0 && moment >= least) continue;
             least = moment;
             best = caution;
@@ -153,35 +183,46 @@ std::uint32_t CellNumbers::of(const VisibilityPoint& point) const {
     return found ? cell.number : static_cast<std::uint32_t>(rows_.size());
 }
 
-std::vector<VisibleShare> shares_of(const CellNumbers& numbers, const std::vector<VisibilityPoint>& points) {
-    std::vector<VisibleShare> out;
-    for (std::uint32_t i = 0; i < points.size(); ++i)
-        if (const std::uint32_t cell = numbers.of(points[i]); cell < numbers.count())
-            out.push_back({i, cell, 1.0f});
-    tbb::parallel_sort(out.begin(), out.end(), [](const VisibleShare& a, const VisibleShare& b) {
-        return a.cell != b.cell ? a.cell < b.cell : a.point < b.point;
-    });
+PointsOfCells points_of_cells(const CellNumbers& numbers, const std::vector<VisibilityPoint>& points) {
+    std::vector<std::uint32_t> cell(points.size());
+    parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) { cell[i] = numbers.of(points[i]); });
+    PointsOfCells out;
+    out.first.assign(std::size_t{numbers.count()} + 2, 0); // of each cell, of what lies outside, and behind
+    for (const std::uint32_t c : cell) ++out.first[c + 1];
+    std::partial_sum(out.first.begin(), out.first.end(), out.first.begin());
+    std::vector<std::uint32_t> next = out.first;
+    out.point.resize(points.size());
+    for (std::uint32_t i = 0; i < points.size(); ++i) out.point[next[cell[i]]++] = i;
     return out;
 }
 
-VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityCells& tree,
-                               const VisibilityCells::Range& range, const std::vector<VisibleShare>& shares,
+VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityParts& coarse,
+                               const std::vector<VisibilitySums>& known, const VisibilityCells& tree,
+                               std::uint32_t node, const PointsOfCells& of,
                                const std::vector<VisibilityPoint>& points, const Occluded& occluded, double dark) {
-    Region region = region_of(range, shares, points);
+    const VisibilityCells::Range range = tree.cells(node);
+    Region region = region_of(range, of, points);
     VisibilityLight light;
-    trace_visibility(parts, region.points, occluded, light, dark);
-    sum_up(region, light, range);
+    const std::vector<Ray> expected = parts.expect(coarse, known);
+    trace_visibility(
+        parts, region.points, occluded,
+        [&](std::size_t point) { return &expected[region.cells[point] * parts.count()]; }, light, dark);
+    sum_up(region, light, true);
     rescale_by_cells(light, region);
-    sum_up(region, light, range);
-    find_priors(region, tree, range, light.parts);
+    sum_up(region, light, false);
+    const auto find_all_priors = [&] {
+        constexpr float kUnknown = 0.5f;
+        find_priors(region, tree, node, range.begin, std::vector<float>(light.parts, kUnknown), 1.0f);
+    };
+    find_all_priors();
     const VisibilityCaution caution = best_caution(region, light);
+    sum_up(region, light, true);
+    find_all_priors();
     VisibilityRows out;
     for (std::size_t cell = 0; cell < region.sums.size(); ++cell) {
-        const VisibilitySums& known = region.sums[cell];
-        out.all.insert(out.all.end(), known.all.begin(), known.all.end());
-        for (std::size_t p = 0; p < light.parts; ++p)
-            out.factors.push_back(visible_factor(known.all[p], known.seen[p], std::max(known.points, 1e-6f),
-                                                 region.priors[cell][p], caution));
+        const std::vector<float>&all = region.sums[cell].all, factors = factors_of(region, cell, caution);
+        out.all.insert(out.all.end(), all.begin(), all.end());
+        out.factors.insert(out.factors.end(), factors.begin(), factors.end());
     }
     return out;
 }

@@ -28,14 +28,12 @@ private:
     AcdfVisibilityTable table_{};
 };
 
-/// A point and a cell that it counts for.
-struct VisibleShare {
-    std::uint32_t point = 0, cell = 0;
-    float weight = 0.0f;
+/// Numbers of points, cell by cell; those outside of all cells come last.
+struct PointsOfCells {
+    std::vector<std::uint32_t> point;
+    std::vector<std::uint32_t> first; ///< where those of a cell begin, and those of the next
 };
-
-/// Points of a cell come together.
-std::vector<VisibleShare> shares_of(const CellNumbers& numbers, const std::vector<VisibilityPoint>& points);
+PointsOfCells points_of_cells(const CellNumbers& numbers, const std::vector<VisibilityPoint>& points);
 
 /// The code of the visibility nearest to a factor.
 std::uint8_t visibility_code(double factor);
@@ -46,10 +44,12 @@ struct VisibilityRows {
     std::vector<float> factors; ///< visible_factor
 };
 
-/// Shoots rays to `parts` from all points that count for the cells of `range`. Factors have the caution that serves
-/// best points that rows have not seen: each estimated from the others. `dark`: as of trace_visibility.
-VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityCells& tree,
-                               const VisibilityCells::Range& range, const std::vector<VisibleShare>& shares,
+/// Shoots rays to `parts`, which are those of `coarse` cut anew, from all points of the cells below
+/// `node`. Factors have the caution that serves best points that rows have not seen: each estimated from the
+/// others. `known`: of these cells. `dark`: as of trace_visibility.
+VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityParts& coarse,
+                               const std::vector<VisibilitySums>& known, const VisibilityCells& tree,
+                               std::uint32_t node, const PointsOfCells& of,
                                const std::vector<VisibilityPoint>& points, const Occluded& occluded, double dark);
 
 } // namespace acdf::compress
