@@ -60,6 +60,7 @@ private:
     bool given(const char* option) const { return command_->get_option(option)->count() > 0; }
     void set_normals();
     void set_separate();
+    void set_cells_beside_cosine();
     builder::LocalOptions read_scene(const Note& note) const;
     void add_bins(CLI::App& command);
     void add_size(CLI::App& command);
@@ -80,6 +81,7 @@ private:
     builder::LocalOptions local_;
     const CLI::App* command_ = nullptr;
     bool no_sharing_ = false, visibility_ = false, volume_ = false;
+    bool cells_beside_cosine_ = false; // --visibility --mis cosine
 };
 
 constexpr double kWorthwhile = 1.5; ///< gain below which a file without normals would do as well
@@ -126,6 +128,15 @@ void LocalConversion::set_separate() {
     }
 }
 
+/// Rows of normals stay those of all light, so that the file is valid alone.
+void LocalConversion::set_cells_beside_cosine() {
+    if (!visibility_ || local_.mis.kind == ACDF_PARTNER_NONE) return;
+    for (const char* option : {"--shares", "--heuristic", "--cosine-share"})
+        if (given(option)) throw CLI::ValidationError("--visibility --mis", std::string("goes without ") + option);
+    cells_beside_cosine_ = true;
+    local_.mis = {};
+}
+
 void LocalConversion::check() {
     use_renderer(*command_, renderer_, input_, local_.target);
     scene_.check(*command_);
@@ -135,10 +146,11 @@ void LocalConversion::check() {
     read_goal(*command_, budget_, local_.goal);
     set_separate();
     if (renderer_ && !visibility_) for_partner_ = use_partner(*command_, renderer_->partner(local_), local_.mis);
+    set_cells_beside_cosine();
     const bool alone = local_.mis.kind == ACDF_PARTNER_NONE;
     for (const char* option : {"--shares", "--heuristic"})
         if (alone && given(option)) throw CLI::ValidationError(option, "is for files with an MIS partner (--mis)");
-    for (const char* option : {"--no-sharing", "--cosine-share", "--visibility", "--max-weight"})
+    for (const char* option : {"--no-sharing", "--cosine-share", "--max-weight"})
         if (!alone && given(option))
             throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
     if (portals_.given() && !visibility_) throw CLI::ValidationError("--portal", "is for --visibility");
@@ -156,7 +168,8 @@ std::vector<std::string*> LocalConversion::files() {
 }
 
 std::string LocalConversion::scene_text() const {
-    return scene_.text() + (visibility_ ? " --visibility" : "") + (volume_ ? " --volume" : "") + portals_.text();
+    return scene_.text() + (visibility_ ? " --visibility" : "") + (cells_beside_cosine_ ? " --mis cosine" : "") +
+           (volume_ ? " --volume" : "") + portals_.text();
 }
 
 std::string LocalConversion::option_text() const {
@@ -181,6 +194,7 @@ builder::LocalOptions LocalConversion::read_scene(const Note& note) const {
         const std::shared_ptr<const input::MeshSurface> surface = read_surface(scene_, note);
         local.visibility = visibility_on(surface, scene_.input().up, volume_);
         if (!scene_.axes().ours()) scene_.axes().tell(local.visibility);
+        local.visibility.beside_cosine = cells_beside_cosine_;
         portals_.tell(local.visibility);
         note_portals(local.visibility, *surface, note);
     }
@@ -318,7 +332,7 @@ void LocalConversion::add_bins(CLI::App& command) {
             "--visibility", visibility_,
             "Store what the scene (a mesh) hides from each of its positions, in visibility cells: hidden light is "
             "not sampled. Positions are in the mesh's own coordinates; more than half of the budget, by default "
-            "4 MiB, is for the cells")
+            "4 MiB, is for the cells. With --mis cosine they are for renderers with MIS, and valid alone, too")
         ->group("Normals");
     command
         .add_flag(

@@ -20,6 +20,7 @@ struct SceneVisibility {
     compress::VisibilityScene scene; ///< empty: there are no visibility cells
     compress::VisibilityFrame frame;
     std::vector<compress::PortalRectangle> portals; ///< among the cells
+    bool beside_cosine = false;                     ///< compress::VisibilitySize
 };
 
 /// What `acdf local` was asked for, beside the probe.

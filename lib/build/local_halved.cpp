@@ -149,6 +149,7 @@ private:
             std::max<std::uint64_t>(store(bare, ACDF_CODEC_NONE).size() + kMetadata, bytes.size());
         const std::uint64_t records = (sizeof(AcdfChunk) + ACDF_ALIGNMENT) * (visibility.portals.empty() ? 1 : 2);
         compress::VisibilitySize size;
+        size.beside_cosine = visibility.beside_cosine;
         size.bytes = budget_ > used + records ? budget_ - used - records : 0;
         compress::VisibilityScene scene = visibility.scene;
         if (!visibility.portals.empty())

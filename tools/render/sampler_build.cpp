@@ -75,10 +75,11 @@ Table local_table(const builder::Target& target, const SamplerSpec& spec,
 }
 
 /// `portals`: those of the scene, too.
-Table visibility_table(const builder::Target& target, const measure::Geometry& geometry, std::uint64_t bytes,
+Table visibility_table(const builder::Target& target, const measure::Geometry& geometry, const SamplerSpec& spec,
                        bool portals) {
     builder::LocalOptions options;
-    options.goal = builder::Goal::of_budget(bytes);
+    options.goal = builder::Goal::of_budget(spec.bytes);
+    options.visibility.beside_cosine = spec.mis.kind == ACDF_PARTNER_COSINE;
     const compress::VisibilityScene scene = measure::visibility_scene(geometry);
     if (geometry.turned) turn_from_y_up(options.visibility);
     for (std::size_t i = 0; portals && i < geometry.portals.size(); ++i)
@@ -190,11 +191,11 @@ struct SamplerBuilder::Store {
                                                                              geometry->turned, kPortalCells)};
         case SamplerKind::visibility:
             if (!geometry) fail_without_scene(spec);
-            return visibility_table(fitted, *geometry, spec.bytes, false);
+            return visibility_table(fitted, *geometry, spec, false);
         case SamplerKind::visibility_portals:
             if (!geometry) fail_without_scene(spec);
             if (geometry->portals.empty()) throw SpecError("sampler '" + spec.text + "': the scene has no portals");
-            return visibility_table(fitted, *geometry, spec.bytes, true);
+            return visibility_table(fitted, *geometry, spec, true);
         case SamplerKind::learned: {
             if (!points) fail_without_scene(spec);
             LearnedSampler made =

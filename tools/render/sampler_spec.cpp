@@ -130,11 +130,17 @@ std::string trimmed(const std::string& text) {
     return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
+/// Visibility cells, which are valid alone whatever they are made for.
+bool has_cells(SamplerKind kind) {
+    return kind == SamplerKind::learned || kind == SamplerKind::visibility ||
+           kind == SamplerKind::visibility_portals;
+}
+
 /// " --mis cosine --shares 2:1 --heuristic power --scene".
 void read_partner(const std::string& options, SamplerSpec& spec) {
-    if (spec.kind != SamplerKind::env && spec.kind != SamplerKind::local && spec.kind != SamplerKind::learned &&
+    if (spec.kind != SamplerKind::env && spec.kind != SamplerKind::local && !has_cells(spec.kind) &&
         spec.kind != SamplerKind::ideal)
-        fail(spec.text, "takes no options: env, local, learned and ideal do");
+        fail(spec.text, "takes no options: env, local, visibility, learned and ideal do");
     std::vector<std::string> words;
     std::istringstream stream(options);
     for (std::string word; stream >> word;) words.push_back(word);
@@ -154,9 +160,8 @@ void read_partner(const std::string& options, SamplerSpec& spec) {
         ++i;
     }
     const builder::Partner& mis = spec.mis;
-    if (spec.kind == SamplerKind::learned &&
-        (mis.kind > ACDF_PARTNER_COSINE || mis.heuristic != ACDF_HEURISTIC_BALANCE || mis.light != mis.other ||
-         spec.of_scene))
+    if (has_cells(spec.kind) && (mis.kind > ACDF_PARTNER_COSINE || mis.heuristic != ACDF_HEURISTIC_BALANCE ||
+                                 mis.light != mis.other || spec.of_scene))
         fail(spec.text, "takes --mis cosine alone");
     if ((spec.kind == SamplerKind::ideal || spec.kind == SamplerKind::local) && spec.mis.kind > ACDF_PARTNER_COSINE)
         fail(spec.text, "takes --mis cosine alone");
@@ -302,7 +307,7 @@ SamplerSpec parse_sampler(const std::string& text) {
     if (spec.kind == SamplerKind::compensated)
         fail(text,
              "its pdf is 0 where there is little light; use mis-compensated, which is mis(compensated,cosine)");
-    if (spec.mis.kind != ACDF_PARTNER_NONE && spec.kind != SamplerKind::learned)
+    if (spec.mis.kind != ACDF_PARTNER_NONE && !has_cells(spec.kind))
         fail(text, "its pdf is 0 where the MIS partner suffices; use mis(" + text + ", cosine)");
     return spec;
 }

@@ -53,7 +53,7 @@ struct SamplerSpec {
     bool uniform = false;                ///< portals: no light
     bool centre = false;                 ///< brdf-table as described
     bool power = false;                  ///< mis: power heuristic
-    builder::Partner mis;                ///< env, local, learned, ideal: that it is made for
+    builder::Partner mis;                ///< env, local, visibility, learned, ideal: that it is made for
     bool of_scene = false;               ///< env, local: made for the normals that the camera sees
     bool automatic = false;              ///< a part of mis: gives as many samples as it recommends itself
     std::string path;                    ///< file

@@ -252,6 +252,9 @@ struct Visibility {
     /// rows of visibility cells for all that comes in another way. With them `transform` turns, mirrors, moves and
     /// scales as a whole, to the frame of directions.
     std::vector<Portal> portals;
+    /// For renderers that take as many samples of the cosine, by the balance heuristic: cells have what those leave
+    /// over. Valid alone, too, with more noise.
+    bool beside_cosine = false;
 };
 
 /// How a local environment is fitted and stored.

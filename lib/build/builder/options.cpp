@@ -147,6 +147,7 @@ build::SceneVisibility internal(const Visibility& visibility) {
         const VisibilityPoint told = external(point);
         return called([&] { return occluded(told, direction.data()); });
     };
+    out.beside_cosine = visibility.beside_cosine;
     for (int k = 0; k < 3; ++k) std::copy_n(visibility.transform[k], 4, out.frame.transform[k]);
     for (const Portal& portal : visibility.portals) out.portals.push_back(internal(portal, visibility.transform));
     return out;

@@ -199,7 +199,7 @@ std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, co
         const std::vector<VisibilitySums> known = tree.sums(cells);
         const VisibilityParts parts(coarse, known);
         const VisibilityRows told = visibility_rows(parts, coarse, known, tree, regions[r], of, division.points,
-                                                    scene.occluded, division.light.dark);
+                                                    scene.occluded, division.light.dark, size.beside_cosine);
         const std::vector<AcdfColumn>& own = parts.columns();
         std::copy(own.begin(), own.end(), columns.begin() + std::ptrdiff_t(r * own.size()));
         for (std::uint32_t cell = cells.begin; cell < cells.end; ++cell) {

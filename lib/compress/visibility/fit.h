@@ -18,6 +18,7 @@ struct VisibilityFrame {
 struct VisibilitySize {
     std::uint64_t bytes = 3 << 20; ///< of the chunks, at most (but for those of one cell)
     std::uint32_t columns = 0;     ///< 0: as suits the size
+    bool beside_cosine = false;    ///< for what as many samples of the cosine leave over
 };
 
 /// The chunk PLAC, and PORT where the scene has portals, for a local environment on one tree of halvings;

@@ -1,10 +1,12 @@
 #include "compress/visibility/rows.h"
 
 #include "compress/parallel.h"
+#include "compress/visibility/beside_cosine.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace acdf::compress {
 namespace {
@@ -120,6 +122,37 @@ std::vector<float> factors_of(const Region& region, std::size_t cell, const Visi
     return out;
 }
 
+/// What rows of cells beside the cosine multiply light with.
+class FactorsBesideCosine {
+public:
+    FactorsBesideCosine(const VisibilityParts& parts, const Region& region) : cosine_(parts), region_(region) {}
+
+    /// Of the points that begin at `next`, which becomes that of the next cell.
+    std::vector<float> of(std::size_t cell, const VisibilityCaution& caution, std::size_t& next) const {
+        constexpr float kLeast = 0.05f; // of the samples go where light comes from, as of learned cells
+        const VisibilitySums& known = region_.sums[cell];
+        const Prior& prior = region_.priors[cell];
+        const std::size_t parts = known.all.size(), first = next;
+        std::vector<float> masses(parts * BesideCosine::groups, 0.0f), seen(parts), out(parts, 1.0f);
+        for (; next < region_.points.size() && region_.cells[next] == cell; ++next) {
+            const std::vector<float> own = cosine_.masses(region_.points[next].normal);
+            for (std::size_t g = 0; g < masses.size(); ++g) masses[g] += own[g];
+        }
+        if (next == first) return out;
+        for (float& mass : masses) mass /= static_cast<float>(next - first);
+        for (std::size_t p = 0; p < parts; ++p)
+            seen[p] = std::min(visible_share(known.all[p], known.seen[p], std::max(known.points, 1e-6f),
+                                             {prior.shares[p], prior.points * caution.prior}),
+                               1.0f);
+        cosine_.factors(known.all.data(), seen.data(), masses.data(), kLeast, out.data());
+        return out;
+    }
+
+private:
+    BesideCosine cosine_;
+    const Region& region_;
+};
+
 /// The second moment of the points that are asked, of factors that the others give.
 double moment_of_asked(const Region& region, const VisibilityLight& light, const VisibilityCaution& caution) {
     double moment = 0.0;
@@ -199,7 +232,8 @@ PointsOfCells points_of_cells(const CellNumbers& numbers, const std::vector<Visi
 VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityParts& coarse,
                                const std::vector<VisibilitySums>& known, const VisibilityCells& tree,
                                std::uint32_t node, const PointsOfCells& of,
-                               const std::vector<VisibilityPoint>& points, const Occluded& occluded, double dark) {
+                               const std::vector<VisibilityPoint>& points, const Occluded& occluded, double dark,
+                               bool beside_cosine) {
     const VisibilityCells::Range range = tree.cells(node);
     Region region = region_of(range, of, points);
     VisibilityLight light;
@@ -219,8 +253,13 @@ VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityPar
     sum_up(region, light, true);
     find_all_priors();
     VisibilityRows out;
+    std::optional<FactorsBesideCosine> beside;
+    if (beside_cosine) beside.emplace(parts, region);
+    std::size_t point = 0;
     for (std::size_t cell = 0; cell < region.sums.size(); ++cell) {
-        const std::vector<float>&all = region.sums[cell].all, factors = factors_of(region, cell, caution);
+        const std::vector<float>& all = region.sums[cell].all;
+        const std::vector<float> factors =
+            beside ? beside->of(cell, caution, point) : factors_of(region, cell, caution);
         out.all.insert(out.all.end(), all.begin(), all.end());
         out.factors.insert(out.factors.end(), factors.begin(), factors.end());
     }

@@ -46,10 +46,12 @@ struct VisibilityRows {
 
 /// Shoots rays to `parts`, which are those of `coarse` cut anew, from all points of the cells below
 /// `node`. Factors have the caution that serves best points that rows have not seen: each estimated from the
-/// others. `known`: of these cells. `dark`: as of trace_visibility.
+/// others. `known`: of these cells. `dark`: as of trace_visibility. `beside_cosine`: for what
+/// as many samples of the cosine leave over (BesideCosine).
 VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityParts& coarse,
                                const std::vector<VisibilitySums>& known, const VisibilityCells& tree,
                                std::uint32_t node, const PointsOfCells& of,
-                               const std::vector<VisibilityPoint>& points, const Occluded& occluded, double dark);
+                               const std::vector<VisibilityPoint>& points, const Occluded& occluded, double dark,
+                               bool beside_cosine);
 
 } // namespace acdf::compress

@@ -54,6 +54,32 @@ struct MeshFolder : SceneFolder {
     }
 };
 
+/// Rows of normals stay those of all light, so that the file is valid without MIS.
+TEST(MeshVisibility, CellsBesideTheCosineAreValidAlone) {
+    ACDF_NOT_SANITIZED();
+    MeshFolder folder;
+    const std::vector<std::string> cells = {"--scene", folder / "room.obj", "--visibility"};
+    std::vector<std::string> beside = cells;
+    beside.insert(beside.end(), {"--mis", "cosine"});
+    ASSERT_EQ(folder.local("room.acdf", cells).code, 0);
+    const Result made = folder.local("beside.acdf", beside);
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_EQ(run_acdf({"validate", folder / "beside.acdf"}).code, 0);
+    const Json info = Json::parse(run_acdf({"info", "--json", folder / "beside.acdf"}).out);
+    EXPECT_NE(std::string(info.at("options")).find(" --visibility --mis cosine"), std::string::npos);
+    File file;
+    ASSERT_TRUE(File::open((folder / "beside.acdf").c_str(), file).ok());
+    EXPECT_FALSE(file.local().requires_mis());
+    EXPECT_NE(read_text(folder / "room.acdf"), read_text(folder / "beside.acdf"));
+    for (const char* option : {"--shares", "--heuristic", "--cosine-share"}) {
+        std::vector<std::string> more = beside;
+        more.insert(more.end(), {option, std::string(option) == "--shares"      ? "2:1"
+                                         : std::string(option) == "--heuristic" ? "power"
+                                                                                : "0.2"});
+        EXPECT_EQ(folder.local("none.acdf", more).code, 2) << option;
+    }
+}
+
 TEST(MeshVisibility, AreSampledInPictures) {
     ACDF_NOT_SANITIZED();
     MeshFolder folder;

@@ -99,6 +99,7 @@ TEST(RenderVisibility, AreAsSummedBehindAWall) {
                              {"visibility:24KiB"},
                              {"visibility-cache:8x4"},
                              {"visibility:24KiB", "cosine"},
+                             {"visibility:24KiB --mis cosine", "cosine"},
                              {"learned:64KiB"},
                              {"learned:64KiB --mis cosine", "cosine"}});
 }
@@ -106,6 +107,24 @@ TEST(RenderVisibility, AreAsSummedBehindAWall) {
 TEST(RenderVisibility, AreAsSummedInARoom) {
     Viewed scene(test::mesh_scene("room.obj"));
     expect_as_summed(scene, {{"local:24KiB"}, {"visibility:24KiB"}, {"tiles:8x4"}, {"visibility-cache:8x4"}});
+}
+
+TEST(RenderVisibility, CellsBesideTheCosineHaveLessNoiseWithIt) {
+    ACDF_NOT_SANITIZED();
+    for (const std::string& text : {test::small_scene("\"full-cdf\""), test::mesh_scene("room.obj")}) {
+        Viewed scene(text);
+        const measure::SamplerParts plain = scene.parts({"visibility:24KiB", "cosine"}),
+                                    beside = scene.parts({"visibility:24KiB --mis cosine", "cosine"});
+        double variance[2] = {};
+        for (const measure::ScenePoint& point : scene.loaded->points.points) {
+            std::vector<measure::PartsAtPoint> at;
+            for (const measure::SamplerParts* parts : {&plain, &beside}) at.emplace_back(*parts, point);
+            const measure::PointSums exact = measure::sums_at(point, scene.loaded->scene.light, at);
+            for (std::size_t k = 0; k < 2 && exact.mean > 0.0; ++k)
+                variance[k] += exact.variance[k] / (exact.mean * exact.mean);
+        }
+        EXPECT_LT(variance[1], 0.98 * variance[0]);
+    }
 }
 
 /// Wherever light is, from any position and for any normal, it may be sampled.
