@@ -154,9 +154,9 @@ partner_draws() { ACDF=$acdf "$root/docs/make/partner_tables.sh" "$data" 12x9 24
 # ---- baselines on the light itself -----------------------------------------------------------------------------------
 
 baselines() {
-    "$acdf" sweep "$data/probes/noon_grass_1k.hdr" -o "$results/sweep" --files env,env-cdf,env-pdf,env-uniform \
+    "$acdf" sweep "$data/probes/noon_grass_1k.hdr" -o "$results/sweep" --filter nearest --files env,env-cdf,env-pdf,env-uniform \
         --budgets 4KiB,16KiB,64KiB,256KiB,1MB --force --quiet --json > "$results/sweep.json"
-    echo "\`acdf sweep DATA/probes/noon_grass_1k.hdr -o out --files env,env-cdf,env-pdf,env-uniform --budgets 4KiB,16KiB,64KiB,256KiB,1MB\`:"
+    echo "\`acdf sweep DATA/probes/noon_grass_1k.hdr -o out --filter nearest --files env,env-cdf,env-pdf,env-uniform --budgets 4KiB,16KiB,64KiB,256KiB,1MB\`:"
     echo
     echo "| system | memory | relative variance | time of a sample, of the full CDF's | ns a pdf |"
     echo "|---|---|---|---|---|"

@@ -65,7 +65,8 @@ def write_pfm(path, image):
 
 def make(image, budget, projection, file):
     """What `acdf env` prints of the file that it makes."""
-    subprocess.run([ACDF, "env", image, "--budget", budget, "--projection", projection, "-f", "-q", "-o", file],
+    subprocess.run([ACDF, "env", image, "--budget", budget, "--projection", projection, "--filter", "nearest",
+                    "-f", "-q", "-o", file],
                    check=True, stdout=subprocess.DEVNULL)
     return json.loads(subprocess.run([ACDF, "info", file, "--json"], check=True, capture_output=True).stdout)["accuracy"]
 
