@@ -142,9 +142,7 @@ void look_up_rows(const AcdfBrdf& brdf, std::size_t count, BrdfBlock& block) {
 void take_numbers(const Table& table, const double* u, std::size_t count, BrdfBlock& block) {
     for (std::size_t i = 0; i < count; i += hn::Lanes(Doubles())) {
         Double u0, u1, side = set(1.0);
-        hn::LoadInterleaved2(Doubles(), u + 2 * i, u0, u1);
-        u0 = unit_interval(u0);
-        u1 = unit_interval(u1);
+        load_numbers(u + 2 * i, u0, u1);
         if (table.floor > 0.0) {
             const auto diffuse = hn::Lt(u1, set(table.floor));
             u1 = hn::IfThenZeroElse(diffuse, hn::Div(hn::Sub(u1, set(table.floor)), set(1.0 - table.floor)));
@@ -226,11 +224,9 @@ void samples_of_block(const AcdfBrdf& brdf, const double* u, std::size_t count, 
 // acdf_brdf_half_position.
 void place_halves(const Table& table, const float* directions, std::size_t count, BrdfBlock& block) {
     for (std::size_t i = 0; i < count; i += hn::Lanes(Doubles())) {
-        hn::Vec<Floats> x, y, z;
-        hn::LoadInterleaved3(Floats(), directions + 3 * i, x, y, z);
-        Double half_x, half_y, half_z, length, dot;
-        const auto valid = half_of(block, i, hn::PromoteTo(Doubles(), x), hn::PromoteTo(Doubles(), y),
-                                   hn::PromoteTo(Doubles(), z), half_x, half_y, half_z, length, dot);
+        Double x, y, z, half_x, half_y, half_z, length, dot;
+        load_vectors(directions + 3 * i, x, y, z);
+        const auto valid = half_of(block, i, x, y, z, half_x, half_y, half_z, length, dot);
         const Double below = sign(half_z), turn0 = at(block.turn[0], i), turn1 = at(block.turn[1], i);
         const Double hx = hn::Mul(below, hn::Add(hn::Mul(turn0, half_x), hn::Mul(turn1, half_y)));
         const Double hy = hn::Mul(below, hn::Sub(hn::Mul(turn0, half_y), hn::Mul(turn1, half_x)));
@@ -271,12 +267,11 @@ void pdfs_of_block(const AcdfBrdf& brdf, const float* directions, std::size_t co
         Word s00, s01, s10, s11, b00, b01, b10, b11;
         hn::LoadInterleaved4(Words(), tiles.descents.steps[i][0].end, s00, s01, s10, s11);
         hn::LoadInterleaved4(Words(), tiles.descents.box[i][0].end, b00, b01, b10, b11);
-        hn::Vec<Floats> x, y, z;
-        hn::LoadInterleaved3(Floats(), directions + 3 * i, x, y, z);
+        Double x, y, z;
+        load_vectors(directions + 3 * i, x, y, z);
         const Double p = probability_of(tiles, i, width(s00, s01), width(s10, s11));
         const Double area = hn::Mul(width(b00, b01), hn::Sub(at(block.rows[1], i), at(block.rows[0], i)));
-        hn::StoreU(half_pdf(table, p, area, at(block.length, i), at(block.dot, i), hn::PromoteTo(Doubles(), z)),
-                   Floats(), pdfs + i);
+        hn::StoreU(half_pdf(table, p, area, at(block.length, i), at(block.dot, i), z), Floats(), pdfs + i);
     }
     for (std::size_t i = 0; i < count; ++i)
         if (!(block.position[0][i] >= 0.0) || !block.mixtures.serves(i))

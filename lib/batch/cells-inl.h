@@ -107,15 +107,13 @@ inline void place_nearly(const Grid& grid, const float* directions, std::size_t 
     }
 }
 
-// The grid squares of directions on the octahedral square, as acdf_grid_square finds them; positions tell whether
-// they are valid.
+// The grid squares of directions on the octahedral square, as acdf_grid_square finds them; positions of
+// directions that are not valid are NaN.
 inline void place_on_square(const Grid& grid, const float* directions, std::size_t count, Places& places,
                             Descents& descents) {
     for (std::size_t i = 0; i < count; i += hn::Lanes(Doubles())) {
-        hn::Vec<Floats> given_x, given_y, given_z;
-        hn::LoadInterleaved3(Floats(), directions + 3 * i, given_x, given_y, given_z);
-        const Double x = hn::PromoteTo(Doubles(), given_x), y = hn::PromoteTo(Doubles(), given_y),
-                     z = hn::PromoteTo(Doubles(), given_z);
+        Double x, y, z;
+        load_vectors(directions + 3 * i, x, y, z);
         const Double length = hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
         const auto valid = hn::And(hn::Gt(length, set(0.9995)), hn::Lt(length, set(1.0005)));
         Double u, v;

@@ -22,9 +22,7 @@ struct EnvironmentBlock {
 void take_numbers(const double* u, std::size_t count, EnvironmentBlock& block) {
     for (std::size_t i = 0; i < count; i += hn::Lanes(Doubles())) {
         Double u0, u1;
-        hn::LoadInterleaved2(Doubles(), u + 2 * i, u0, u1);
-        u0 = unit_interval(u0);
-        u1 = unit_interval(u1);
+        load_numbers(u + 2 * i, u0, u1);
         hn::Store(u0, Doubles(), block.given[0] + i);
         hn::Store(u1, Doubles(), block.given[1] + i);
         hn::StoreInterleaved2(step_of(u0), step_of(u1), Words(), block.descents.target[i]);

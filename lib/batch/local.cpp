@@ -46,9 +46,9 @@ void local_samples_of_block(const AcdfLocal& local, const double* u, std::size_t
     Tiles& tiles = block.tiles;
     for (std::size_t i = 0; i < count; i += hn::Lanes(Doubles())) {
         Double u0, u1;
-        hn::LoadInterleaved2(Doubles(), u + 2 * i, u0, u1);
-        hn::Store(unit_interval(u0), Doubles(), tiles.u[0] + i);
-        hn::Store(unit_interval(u1), Doubles(), tiles.u[1] + i);
+        load_numbers(u + 2 * i, u0, u1);
+        hn::Store(u0, Doubles(), tiles.u[0] + i);
+        hn::Store(u1, Doubles(), tiles.u[1] + i);
     }
     tiles.sample<ACDF_NORMALS_MIXED>(local.rows_of_normals, acdf_halvings_nodes(local.environment.halved), count);
     look_up_heights(local.environment, tiles.descents, count, block.places);

@@ -34,10 +34,8 @@ HWY_INLINE Double corner(Double n, Double ax, Double ay, Double az, hn::Mask<Dou
 inline void find_corners(std::uint32_t subdivisions, std::size_t count, Mixtures& mixtures) {
     const Double n = set(static_cast<double>(subdivisions)), zero = set(0.0), one = set(1.0);
     for (std::size_t i = 0; i < count; i += hn::Lanes(Doubles())) {
-        hn::Vec<Floats> given_x, given_y, given_z;
-        hn::LoadInterleaved3(Floats(), mixtures.vectors + 3 * i, given_x, given_y, given_z);
-        const Double x = hn::PromoteTo(Doubles(), given_x), y = hn::PromoteTo(Doubles(), given_y),
-                     z = hn::PromoteTo(Doubles(), given_z);
+        Double x, y, z;
+        load_vectors(mixtures.vectors + 3 * i, x, y, z);
         const Double sum = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Abs(z));
         const auto valid = hn::And(hn::Gt(sum, zero), hn::Lt(sum, hn::Inf(Doubles())));
         const auto scaled = [&](Double a) {

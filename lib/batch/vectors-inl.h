@@ -39,6 +39,15 @@ using Word = hn::Vec<Words>;
 
 HWY_INLINE Double set(double x) { return hn::Set(Doubles(), x); }
 
+// Vectors of three floats.
+HWY_INLINE void load_vectors(const float* given, Double& x, Double& y, Double& z) {
+    hn::Vec<Floats> given_x, given_y, given_z;
+    hn::LoadInterleaved3(Floats(), given, given_x, given_y, given_z);
+    x = hn::PromoteTo(Doubles(), given_x);
+    y = hn::PromoteTo(Doubles(), given_y);
+    z = hn::PromoteTo(Doubles(), given_z);
+}
+
 // Integers below 2^31.
 HWY_INLINE Double to_double(Word x) { return hn::PromoteTo(Doubles(), hn::BitCast(Integers(), x)); }
 // high - low, from 0 to 2^31.
@@ -51,6 +60,13 @@ HWY_INLINE Double width(Word low, Word high) {
 HWY_INLINE Double unit_interval(Double u) {
     const auto valid = hn::And(hn::Gt(u, set(0.0)), hn::Lt(u, hn::Inf(Doubles())));
     return hn::IfThenElseZero(valid, hn::Min(u, set(1.0)));
+}
+
+// Pairs of random numbers, in [0, 1].
+HWY_INLINE void load_numbers(const double* u, Double& u0, Double& u1) {
+    hn::LoadInterleaved2(Doubles(), u, u0, u1);
+    u0 = unit_interval(u0);
+    u1 = unit_interval(u1);
 }
 
 // acdf_step_of.

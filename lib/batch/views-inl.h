@@ -23,10 +23,9 @@ struct ViewPlaces {
 
 inline void place_views(const AcdfBrdf& brdf, const Mixtures& mixtures, std::size_t count, ViewPlaces& places) {
     for (std::size_t i = 0; i < count; i += hn::Lanes(Doubles())) {
-        hn::Vec<Floats> given_x, given_y, given_z;
-        hn::LoadInterleaved3(Floats(), mixtures.vectors + 3 * i, given_x, given_y, given_z);
-        const Double x = hn::PromoteTo(Doubles(), given_x), y = hn::PromoteTo(Doubles(), given_y),
-                     z = hn::PromoteTo(Doubles(), given_z), one = set(1.0);
+        Double x, y, z;
+        load_vectors(mixtures.vectors + 3 * i, x, y, z);
+        const Double one = set(1.0);
         const Double length2 = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
         const auto valid = hn::And(is_unit_square(length2), hn::Gt(z, set(0.0)));
         const Double elevation = hn::Sqrt(hn::IfThenElseZero(hn::Lt(z, one), hn::Sub(one, z)));

@@ -34,7 +34,7 @@ void with_each_target(Test&& test) {
 using Pair = std::array<double, 2>;
 using Vector = std::array<float, 3>;
 
-/// Pairs of random numbers, and of all that may be given instead.
+/// Pairs of random numbers, among them 0, 1, NaN, infinite and other numbers outside of [0, 1].
 inline std::vector<Pair> numbers(std::size_t count, unsigned seed) {
     constexpr double inf = std::numeric_limits<double>::infinity();
     static const double odd[] = {0.0,          1.0,  -0.0, 1.0 - 0x1p-53, 0x1p-31, 1.0 - 0x1p-31, 0.5, 0x1p-1060,
