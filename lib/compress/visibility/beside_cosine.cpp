@@ -36,8 +36,7 @@ std::vector<float> BesideCosine::masses(const std::array<float, 3>& n) const {
     return out;
 }
 
-void BesideCosine::factors(const float* light, const float* seen, const float* masses, float least,
-                           float* out) const {
+void BesideCosine::factors(const float* light, const float* seen, const float* masses, float* out) const {
     constexpr int kSteps = 12;
     constexpr float kLeastLight = 1e-12f; // of all: less has no factor of its own
     const std::size_t parts = shares_.size() / groups;
@@ -57,14 +56,15 @@ void BesideCosine::factors(const float* light, const float* seen, const float* m
                 const double share = double{shares_[g]}, both = double{pdf[p]} * share + double{masses[g]};
                 if (both > 0.0) derivative += share * share * share / (both * both);
             }
-            pdf[p] *= static_cast<float>(own * std::sqrt(double{seen[p]} * derivative));
+            pdf[p] *= static_cast<float>(own * std::sqrt(double{std::min(seen[p], 1.0f)} * derivative));
             sum += pdf[p];
         }
         if (!(sum > 0.0f)) break;
         for (std::size_t p = 0; p < parts; ++p) pdf[p] /= sum;
     }
     for (std::size_t p = 0; p < parts; ++p)
-        out[p] = least + (light[p] * unit > kLeastLight ? (1.0f - least) * pdf[p] / (light[p] * unit) : 0.0f);
+        out[p] = kUnoccluded +
+                 (light[p] * unit > kLeastLight ? (1.0f - kUnoccluded) * pdf[p] / (light[p] * unit) : 0.0f);
 }
 
 } // namespace acdf::compress

@@ -28,9 +28,11 @@ inline float visible_share(float all, float seen, float points, const Visibility
 }
 /// What rows are to multiply the light of a part with: the root of the share that arrives, which is best where
 /// parts are seen by some of a cell's points and not by others.
-inline float visible_factor(float all, float seen, float points, const VisibilityPrior& prior, float floor) {
-    const float share = visible_share(all, seen, points, prior);
+inline float factor_of_share(float share, float floor) {
     return floor + (1.0f - floor) * std::sqrt(share < 1.0f ? share : 1.0f);
+}
+inline float visible_factor(float all, float seen, float points, const VisibilityPrior& prior, float floor) {
+    return factor_of_share(visible_share(all, seen, points, prior), floor);
 }
 
 /// Cells, best first: each division is the one that lowers most, summed over points, the root of the second moment.

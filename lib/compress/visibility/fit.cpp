@@ -176,7 +176,7 @@ std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, co
         if (progress) progress(share);
     };
     const PortalSet* portals = scene.portals.get();
-    const VisibilityParts coarse(local, bins, size.columns > 0 ? size.columns : usual_columns(size.bytes, portals));
+    const VisibilityParts coarse(local, bins, usual_columns(size.bytes, portals));
     const std::uint64_t width = 1 + coarse.column_count();
     const Counts counts = portals ? counts_for(size.bytes - std::min<std::uint64_t>(size.bytes, portals->bytes()),
                                                width + portals->row_bytes(), coarse.column_count())

@@ -17,7 +17,6 @@ struct VisibilityFrame {
 
 struct VisibilitySize {
     std::uint64_t bytes = 3 << 20; ///< of the chunks, at most (but for those of one cell)
-    std::uint32_t columns = 0;     ///< 0: as suits the size
     bool beside_cosine = false;    ///< for what as many samples of the cosine leave over
 };
 

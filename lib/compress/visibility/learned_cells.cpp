@@ -18,9 +18,8 @@ constexpr float kLeastRays = 24.0f;                      ///< of a cell
 constexpr float kGuess = 0.5f;                           ///< what is seen where nothing is known
 constexpr float kGuessRays = 3.0f;                       ///< rays that a guess counts as, for each part
 constexpr float kFewestPrior = 1.0f, kMostPrior = 32.0f; ///< the same of what a cell knows for those in it
-constexpr float kUnoccluded = 0.05f; ///< of the samples of a cell: they go where light comes from, whatever is seen
-constexpr float kDarkestCell = 0.1f; ///< of the mean: what is added to the light of each cell
-constexpr std::uint32_t kManySites = 1024; ///< of a cell whose halves are worth threads of their own
+constexpr float kDarkestCell = 0.1f;                     ///< of the mean: what is added to the light of each cell
+constexpr std::uint32_t kManySites = 1024;               ///< of a cell whose halves are worth threads of their own
 
 /// A cell, or what is divided into two.
 struct LearnedCell {
@@ -123,7 +122,7 @@ private:
                 const float part = sites_.rays(order_[i]) / sums.rays;
                 for (std::size_t g = 0; g < masses.size(); ++g) masses[g] += part * own[g];
             }
-            beside_->factors(sums.light.data(), shares.data(), masses.data(), kUnoccluded, out.data());
+            beside_->factors(sums.light.data(), shares.data(), masses.data(), out.data());
             return out;
         }
         const float more = unoccluded(sums, shares, out);

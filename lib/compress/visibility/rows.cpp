@@ -112,46 +112,38 @@ void rescale_by_cells(VisibilityLight& light, const Region& region) {
     }
 }
 
-std::vector<float> factors_of(const Region& region, std::size_t cell, const VisibilityCaution& caution) {
+/// Which share of each part arrives.
+std::vector<float> shares_of(const Region& region, std::size_t cell, const VisibilityCaution& caution) {
     const VisibilitySums& known = region.sums[cell];
     const Prior& prior = region.priors[cell];
     std::vector<float> out;
     for (std::size_t p = 0; p < known.all.size(); ++p)
-        out.push_back(visible_factor(known.all[p], known.seen[p], std::max(known.points, 1e-6f),
-                                     {prior.shares[p], prior.points * caution.prior}, caution.floor));
+        out.push_back(visible_share(known.all[p], known.seen[p], std::max(known.points, 1e-6f),
+                                    {prior.shares[p], prior.points * caution.prior}));
     return out;
 }
 
-/// What rows of cells beside the cosine multiply light with.
-class FactorsBesideCosine {
-public:
-    FactorsBesideCosine(const VisibilityParts& parts, const Region& region) : cosine_(parts), region_(region) {}
+std::vector<float> factors_of(const Region& region, std::size_t cell, const VisibilityCaution& caution) {
+    std::vector<float> out = shares_of(region, cell, caution);
+    for (float& share : out) share = factor_of_share(share, caution.floor);
+    return out;
+}
 
-    /// Of the points that begin at `next`, which becomes that of the next cell.
-    std::vector<float> of(std::size_t cell, const VisibilityCaution& caution, std::size_t& next) const {
-        constexpr float kLeast = 0.05f; // of the samples go where light comes from, as of learned cells
-        const VisibilitySums& known = region_.sums[cell];
-        const Prior& prior = region_.priors[cell];
-        const std::size_t parts = known.all.size(), first = next;
-        std::vector<float> masses(parts * BesideCosine::groups, 0.0f), seen(parts), out(parts, 1.0f);
-        for (; next < region_.points.size() && region_.cells[next] == cell; ++next) {
-            const std::vector<float> own = cosine_.masses(region_.points[next].normal);
-            for (std::size_t g = 0; g < masses.size(); ++g) masses[g] += own[g];
-        }
-        if (next == first) return out;
-        for (float& mass : masses) mass /= static_cast<float>(next - first);
-        for (std::size_t p = 0; p < parts; ++p)
-            seen[p] = std::min(visible_share(known.all[p], known.seen[p], std::max(known.points, 1e-6f),
-                                             {prior.shares[p], prior.points * caution.prior}),
-                               1.0f);
-        cosine_.factors(known.all.data(), seen.data(), masses.data(), kLeast, out.data());
-        return out;
+/// The same beside the cosine around the normals of the cell's points.
+std::vector<float> factors_of(const BesideCosine& beside, const Region& region, std::size_t cell,
+                              const VisibilityCaution& caution) {
+    std::vector<float> out = shares_of(region, cell, caution);
+    const auto [first, last] = std::equal_range(region.cells.begin(), region.cells.end(), cell);
+    if (first == last) return std::vector<float>(out.size(), 1.0f);
+    std::vector<float> masses(out.size() * BesideCosine::groups, 0.0f);
+    for (auto i = first; i != last; ++i) {
+        const std::vector<float> own = beside.masses(region.points[std::size_t(i - region.cells.begin())].normal);
+        for (std::size_t g = 0; g < masses.size(); ++g) masses[g] += own[g];
     }
-
-private:
-    BesideCosine cosine_;
-    const Region& region_;
-};
+    for (float& mass : masses) mass /= static_cast<float>(last - first);
+    beside.factors(region.sums[cell].all.data(), out.data(), masses.data(), out.data());
+    return out;
+}
 
 /// The second moment of the points that are asked, of factors that the others give.
 double moment_of_asked(const Region& region, const VisibilityLight& light, const VisibilityCaution& caution) {
@@ -253,13 +245,12 @@ VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityPar
     sum_up(region, light, true);
     find_all_priors();
     VisibilityRows out;
-    std::optional<FactorsBesideCosine> beside;
-    if (beside_cosine) beside.emplace(parts, region);
-    std::size_t point = 0;
+    std::optional<BesideCosine> beside;
+    if (beside_cosine) beside.emplace(parts);
     for (std::size_t cell = 0; cell < region.sums.size(); ++cell) {
         const std::vector<float>& all = region.sums[cell].all;
         const std::vector<float> factors =
-            beside ? beside->of(cell, caution, point) : factors_of(region, cell, caution);
+            beside ? factors_of(*beside, region, cell, caution) : factors_of(region, cell, caution);
         out.all.insert(out.all.end(), all.begin(), all.end());
         out.factors.insert(out.factors.end(), factors.begin(), factors.end());
     }

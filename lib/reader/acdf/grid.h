@@ -44,8 +44,7 @@ ACDF_FN double acdf_octahedral_position_on(const AcdfRange* range, double t, uin
     return acdf_clamp(at, low + border, (double)range->high - border) / (double)resolution;
 }
 
-/* The direction that what is left of the random numbers picks in a cell of probability p of an octahedral square.
- */
+/* The direction at the rescaled random numbers u in a cell of probability p of an octahedral square. */
 ACDF_FN AcdfDirectionSample acdf_octahedral_position(const AcdfGrid* grid, const AcdfRange range[2],
                                                      const double u[2], double p) {
     AcdfDirectionSample out;

@@ -1,12 +1,12 @@
-/* Portals: rectangles that light comes through, as a mixture sees them. One freestanding header over
+/* Portals: rectangles that light comes through, as a position sees them. One freestanding header over
  * acdf/visibility.h, valid C99, C++17 and CUDA/HIP/SYCL, with the same contract (SPEC.md §13).
  *
  * All portals that face the same way share a map of the light of their hemisphere. Its axes are tangents along the
  * sides of the portals, bent into a square, so that a portal is an upright rectangle of the map from wherever it is
  * seen: a *visible_portal* (Bitterli, Novak, Jarosz, "Portal-Masked Environment Map Sampling", EGSR 2015). A portal
  * is divided into pieces along its sides. Each is sampled as the light in it, times a cosine to the normal, times
- * how much of it the cells of the mixture see; then, in a piece, the map is followed. A share that the cells store
- * is sampled by the row of the mixture: it covers all other light, and a scene that has changed.
+ * how much of it the cell of the position sees; then, in a piece, the map is followed. A share that the cell stores
+ * is sampled by its row: it covers all other light, and a scene that has changed.
  *
  * The map is bent by t / (1 + |t|), not by the arc tangent of that paper: cells are about as even, and no machine
  * rounds it in another way. */
@@ -28,7 +28,7 @@ typedef struct AcdfPortalTable {
     const uint8_t* rows;  /* one a row of visibility cells */
 } AcdfPortalTable;
 
-/* A portal that a mixture sees; none of its tangents is larger than this, and none of its sides shorter in a map.
+/* A portal that a position sees; none of its tangents is larger than this, and none of its sides shorter in a map.
  */
 #define ACDF_STEEPEST 0x1p12
 #define ACDF_THINNEST 0x1p-12
@@ -58,7 +58,7 @@ typedef struct AcdfPortalEye {
     AcdfVisiblePortal seen;
 } AcdfPortalEye;
 
-/* The mixture of a tangent on an axis of a map of `size` cells, and back. */
+/* Where a tangent lies on an axis of a map of `size` cells, and back. */
 ACDF_FN double acdf_bend(double tangent, double size) {
     return 0.5 * size * (1.0 + tangent / (1.0 + fabs(tangent)));
 }
@@ -71,7 +71,7 @@ ACDF_FN double acdf_dot3(const float a[3], const double b[3]) {
     return (double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2];
 }
 
-/* The cell of a mixture on an axis: the last one where it lies on the upper end. */
+/* The cell of a place on an axis: the last one where it lies on the upper end. */
 ACDF_FN uint32_t acdf_map_cell(double at, uint32_t size) {
     const uint32_t cell = (uint32_t)at;
     return cell < size ? cell : size - 1;
@@ -358,7 +358,7 @@ ACDF_OUTLINE_ON_CPU float acdf_visible_portals_pdf(const AcdfPortalEye* eye,
                                       sum / acdf_visible_portals_weight(eye->table, visible_portals), row);
 }
 
-/* Whether u[0] samples through a visible_portal, not by the row; what is left of it takes its mixture. */
+/* Whether u[0] samples through a visible_portal, not by the row; what is left of it takes its place. */
 ACDF_FN int acdf_visible_portals_choose(const AcdfVisiblePortals* visible_portals, double* u) {
     if (u[0] < visible_portals->of_row) {
         u[0] = acdf_unit_interval(u[0] / visible_portals->of_row);
@@ -368,7 +368,7 @@ ACDF_FN int acdf_visible_portals_choose(const AcdfVisiblePortals* visible_portal
     return 1;
 }
 
-/* The one of `count` parts of weights, some > 0, that *u of all samples; what is left of it takes its mixture. */
+/* The one of `count` parts of weights, some > 0, that *u of all samples; what is left of it takes its place. */
 ACDF_FN uint32_t acdf_sample_part(const double* weight, uint32_t count, double* u) {
     double x = 0.0;
     uint32_t i, last = 0;
@@ -437,7 +437,7 @@ ACDF_FN double acdf_map_row(const uint32_t* sums, uint32_t size, uint32_t column
 /* How far from a tangent a direction stays, so that rounding does not carry it across. */
 ACDF_FN double acdf_tangent_border(double t) { return 0x1p-22 * (1.0 + t * t); }
 
-/* The tangent of a mixture on an axis of a map that was sampled in a cell, inside of the cell where its borders lie
+/* The tangent of a place on an axis of a map that was sampled in a cell, inside of the cell where its borders lie
  * between `low` and `high`. */
 ACDF_FN double acdf_inside_cell(double at, double size, uint32_t cell, double low, double high) {
     const double begin = (double)cell, end = begin + 1.0;
