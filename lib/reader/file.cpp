@@ -140,6 +140,7 @@ void take_parts(const Parts& parts, AcdfFile& file) noexcept {
     file.partner = parts.partner;
     file.metadata = parts.metadata;
     file.metadata_count = parts.metadata_count;
+    file.payloads = parts.payloads;
     if (file.kind() != ACDF_KIND_ENVIRONMENT) return;
     file.environment.tree = parts.tree;
     file.environment.root = parts.bins ? parts.bins[0].root : 0;

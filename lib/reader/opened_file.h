@@ -1,6 +1,8 @@
 // What an open file is, of the C++ interface and of that in C. Not installed.
 #pragma once
 
+#include "check/check.h"
+
 #include <acdf/acdf.h>
 #include <acdf/reader.h>
 
@@ -16,6 +18,7 @@ struct AcdfFile {
     const AcdfPartner* partner;
     const std::uint8_t* metadata;
     std::uint32_t metadata_count;
+    acdf::Payloads payloads; ///< all chunks that are known, for rooms that read more than views of the reader
     AcdfEnvironment environment;
 #ifndef ACDF_ENVIRONMENT_ONLY
     AcdfLocal local;
@@ -33,8 +36,6 @@ struct AcdfFile {
 };
 
 namespace acdf {
-
-struct Parts;
 
 /// File::open and File::from_memory; null on failure. `status` is that of success before.
 AcdfFile* open_path(const char* path, const LoadOptions& options, Status& status) noexcept;

@@ -316,7 +316,7 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
     check_table(table, header, size, report);
     if (table.legal && !report.stopped()) check_padding(table, bytes, size, report);
     if (!report.stopped()) check_crcs(table, bytes, report);
-    Payloads payloads;
+    Payloads& payloads = parts.payloads;
     if (!report.stopped()) read_payloads(table, bytes, limits, allocator, report, parts, payloads);
     const Payload& description = payloads.of[chunk_description];
     if (description.data && !report.stopped()) check_description(description, header.kind, report, parts);

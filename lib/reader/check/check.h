@@ -63,6 +63,37 @@ inline u32 load_u32(const u8* bytes) noexcept {
     return value;
 }
 
+/// The bytes of one chunk, inflated if they were compressed. `data` is null where they cannot be read.
+struct Payload {
+    const u8* data = nullptr;
+    u64 size = 0;
+    u64 file_offset = 0;
+    bool inflated = false;
+
+    /// The byte of the file that stands for byte `position` of the payload.
+    u64 at(u64 position) const noexcept { return inflated ? file_offset : file_offset + position; }
+};
+
+enum KnownChunk {
+    chunk_description,
+    chunk_bins,
+    chunk_tree,
+    chunk_metadata,
+    chunk_local,
+    chunk_views,
+    chunk_partner,
+    chunk_visibility,
+    chunk_portals,
+    chunk_halvings,
+    chunk_maps,
+    chunk_normals,
+    known_chunks
+};
+
+struct Payloads {
+    Payload of[known_chunks];
+};
+
 /// Where the parts of a file lie once found: what `File` keeps. Owns the nodes of halvings.
 struct Parts {
     Parts() = default;
@@ -70,6 +101,7 @@ struct Parts {
     Parts& operator=(const Parts&) = delete;
     ~Parts();
 
+    Payloads payloads;
     const AcdfDescription* description = nullptr;
     const AcdfAxis* axes = nullptr; ///< description->axis_count
     const AcdfBin* bins = nullptr;  ///< description->bin_count

@@ -41,37 +41,6 @@ private:
     void pass(const Finding& finding) noexcept;
 };
 
-/// The bytes of one chunk, inflated if they were compressed. `data` is null where they cannot be read.
-struct Payload {
-    const u8* data = nullptr;
-    u64 size = 0;
-    u64 file_offset = 0;
-    bool inflated = false;
-
-    /// The byte of the file that stands for byte `position` of the payload.
-    u64 at(u64 position) const noexcept { return inflated ? file_offset : file_offset + position; }
-};
-
-enum KnownChunk {
-    chunk_description,
-    chunk_bins,
-    chunk_tree,
-    chunk_metadata,
-    chunk_local,
-    chunk_views,
-    chunk_partner,
-    chunk_visibility,
-    chunk_portals,
-    chunk_halvings,
-    chunk_maps,
-    chunk_normals,
-    known_chunks
-};
-
-struct Payloads {
-    Payload of[known_chunks];
-};
-
 constexpr u32 most_steps = 0x7FFFFFFF; ///< of an axis (rule 5014)
 
 inline u64 round_up(u64 n, u64 to) noexcept { return (n + to - 1) / to * to; }
