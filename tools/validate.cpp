@@ -7,6 +7,8 @@
 #include "tools/commands.h"
 
 #include "reader/check/check.h"
+#include "rules/rules.h"
+#include "rules/signatures.h"
 
 #include <nlohmann/json.hpp>
 
@@ -42,7 +44,9 @@ Report validate_file(const std::string& path) {
     Report report{path, {}, {}};
     const std::vector<std::uint8_t> bytes = read_acdf_bytes(path);
     report.verdict = validate(bytes.data(), bytes.size(), [&](const Finding& finding) {
-        report.faults.push_back({finding.rule, finding.offset, finding.detail});
+        const bool foreign = finding.number == 2002;
+        report.faults.push_back({find_rule(finding.number), finding.offset,
+                                 foreign ? what_is_it(bytes.data(), bytes.size()) : finding.detail});
     });
     return report;
 }

@@ -40,13 +40,8 @@ void fail_at(Status& status, int rule, u64 offset, const char* detail) {
     status.code = code_of(rule);
     status.rule = rule;
     status.offset = offset;
-#ifdef ACDF_ENVIRONMENT_ONLY
-    write_message(status.message, sizeof status.message, "%s%srule %u of SPEC.md is broken at byte %llu", detail,
-                  *detail ? ": " : "", static_cast<u32>(rule), static_cast<ull>(offset));
-#else
-    write_message(status.message, sizeof status.message, "%s (rule %u at byte %llu: %s)", detail,
-                  static_cast<u32>(rule), static_cast<ull>(offset), find_rule(rule)->sentence);
-#endif
+    write_message(status.message, sizeof status.message, "%s (rule %u of SPEC.md at byte %llu)",
+                  *detail ? detail : "the file is not valid", static_cast<u32>(rule), static_cast<ull>(offset));
     tidy(status.message);
 }
 
@@ -90,11 +85,11 @@ bool first_error(const Finding& finding, void* status) {
 
 bool take(const AcdfAllocator& allocator, u64 size, AcdfBlock& block, Status& status) {
     if (size < SIZE_MAX - ACDF_ALIGNMENT) block = take_block(allocator, static_cast<std::size_t>(size));
-    return block.data || fail(status, 1003, "%llu bytes", static_cast<ull>(size));
+    return block.data || fail(status, 1003, "no memory for %llu bytes", static_cast<ull>(size));
 }
 
 bool is_within(u64 size, const Limits& limits, Status& status) {
-    return size <= limits.max_file_bytes || fail(status, 1004, "%llu bytes, the limit is %llu",
+    return size <= limits.max_file_bytes || fail(status, 1004, "the file has %llu bytes, the limit is %llu",
                                                  static_cast<ull>(size), static_cast<ull>(limits.max_file_bytes));
 }
 
@@ -161,7 +156,7 @@ bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (file.kind() == ACDF_KIND_INDEXED) {
         file.indexed = make_indexed(parts, options.tables, options.allocator, file.memory[2]);
-        if (!file.indexed.top) return fail(status, 1003, "%llu halvings", ull{parts.halving_count});
+        if (!file.indexed.top) return fail(status, 1003, "no memory for %llu halvings", ull{parts.halving_count});
         return true;
     }
     if (file.kind() == ACDF_KIND_TABLE) {
@@ -171,10 +166,10 @@ bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
     }
 #endif
     if (parts.halvings && !make_halved(parts, options.tables, file))
-        return fail(status, 1003, "%llu halvings", ull{parts.halving_count});
+        return fail(status, 1003, "no memory for %llu halvings", ull{parts.halving_count});
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (parts.normals && !make_rows(parts, options.tables, file))
-        return fail(status, 1003, "%llu rows", ull{parts.normals->row_count});
+        return fail(status, 1003, "no memory for %llu rows", ull{parts.normals->row_count});
     if (file.kind() != ACDF_KIND_ENVIRONMENT) make_view(parts, options.tables, file);
 #endif
     return true;

@@ -33,7 +33,7 @@ bool allocate_inflated(const ChunkTable& table, const Limits& limits, const Acdf
         const u64 length = table.chunks[i].raw_length;
         if (length > most - sum) {
             report.add(3012, table.offset_of(i) + offsetof(AcdfChunk, raw_length),
-                       "more than the limit of %llu bytes", static_cast<ull>(most));
+                       "chunks inflate to more than the limit of %llu bytes", static_cast<ull>(most));
             return false;
         }
         sum += length;
@@ -41,7 +41,8 @@ bool allocate_inflated(const ChunkTable& table, const Limits& limits, const Acdf
     }
     if (block == 0) return true;
     parts.inflated = take_block(allocator, static_cast<std::size_t>(block));
-    if (!parts.inflated.data) report.add(1003, 0, "%llu bytes for inflated chunks", static_cast<ull>(block));
+    if (!parts.inflated.data)
+        report.add(1003, 0, "no memory for %llu bytes of inflated chunks", static_cast<ull>(block));
     return parts.inflated.data != nullptr;
 }
 

@@ -2,6 +2,8 @@
 #include "tests/lib/reader/load.h"
 #include "tests/lib/reader/planes.h"
 
+#include "rules/rules.h"
+
 #include <acdf/halvings.h>
 
 #include <gtest/gtest.h>

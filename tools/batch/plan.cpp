@@ -4,6 +4,7 @@
 #include "compress/parallel.h"
 #include "input/probe/source.h"
 #include "reader/check/check.h"
+#include "reader/check/rule_codes.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/messages.h"
 #include "tools/cli/sequence.h"
@@ -37,8 +38,8 @@ AcdfKind file_kind(const BatchJob& job) {
 std::string first_fault(const std::vector<std::uint8_t>& bytes) {
     std::string fault;
     validate(bytes.data(), bytes.size(), [&](const Finding& finding) {
-        if (finding.rule->severity != Severity::error) return true;
-        fault = "rule " + std::to_string(finding.rule->number) + ": " + finding.detail;
+        if (code_of(finding.number) == ErrorCode::none) return true;
+        fault = "rule " + std::to_string(finding.number) + ": " + finding.detail;
         return false;
     });
     return fault;

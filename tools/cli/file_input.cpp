@@ -1,6 +1,7 @@
 #include "tools/cli/file_input.h"
 
 #include "build/text/format_names.h"
+#include "rules/signatures.h"
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
 
@@ -83,6 +84,8 @@ LoadedFile load_file(const std::string& path) {
     loaded.bytes = read_acdf_bytes(path);
     const Status status = File::from_memory(loaded.bytes.data(), loaded.bytes.size(), loaded.file);
     if (status.ok()) return loaded;
+    if (status.rule == 2002)
+        throw Failure(shown(path) + ": " + what_is_it(loaded.bytes.data(), loaded.bytes.size()));
     std::string text = shown(path) + ": " + status.message;
     if (status.code == ErrorCode::malformed) text += "; `acdf validate` lists every fault";
     throw Failure(text);

@@ -32,15 +32,17 @@ const char* brdf_axis_fault(const AcdfAxis& axis, u32 i, bool halved) {
 void check_brdf_axes(const Payload& payload, bool halved, Report& report, const Parts& parts) {
     const AcdfDescription& d = *parts.description;
     if (d.axis_count != 4) {
-        report.add(8001, payload.at(offsetof(AcdfDescription, axis_count)), "it has %u axes", d.axis_count);
+        report.add(8001, payload.at(offsetof(AcdfDescription, axis_count)), "a BRDF with %u axes", d.axis_count);
         return;
     }
     for (u32 i = 0; i < 4; ++i)
         if (const char* fault = brdf_axis_fault(parts.axes[i], i, halved))
-            report.add(8001, payload.at(sizeof d + i * sizeof(AcdfAxis)), "axis %u: the %s differs", i, fault);
+            report.add(8001, payload.at(sizeof d + i * sizeof(AcdfAxis)),
+                       "axis %u is not that of a BRDF: the %s differs", i, fault);
     check_bin_count(payload, 8002, u64{parts.axes[2].resolution} * parts.axes[3].resolution, report, parts);
     for (u32 i = 0; parts.bins && i < d.bin_count; ++i)
-        if (parts.bins[i].root == ACDF_NO_ROOT) report.add(8006, payload.at(0), "bin %u is not stored", i);
+        if (parts.bins[i].root == ACDF_NO_ROOT)
+            report.add(8006, payload.at(0), "bin %u of a BRDF is not stored", i);
 }
 
 const char* views_fault(const Payload& payload, const Parts& parts) {
@@ -62,8 +64,8 @@ void check_nodes(const Payload& payload, Report& report, const Parts& parts) {
     for (u32 i = 0; i < parts.views->theta_count; ++i) {
         const float x = parts.nodes[i];
         if (!(x >= 0.0f && x <= 1.0f && x > before)) {
-            report.add(8004, payload.at(sizeof(AcdfViews) + u64{i} * sizeof x), "view %u is at %g", i,
-                       static_cast<double>(x));
+            report.add(8004, payload.at(sizeof(AcdfViews) + u64{i} * sizeof x),
+                       "stored view %u is not above the one before, or not in [0, 1]", i);
             return;
         }
         before = x;
@@ -77,18 +79,18 @@ void check_brdf_kind(const Payloads& payloads, Report& report, Parts& parts) noe
     if (parts.description->parameterization != ACDF_PARAM_HALF_ANGLE) return; // rule 5016: what axes mean is open
     check_brdf_axes(description, payloads.of[chunk_halvings].data != nullptr, report, parts);
     if (!views.data) {
-        report.add(8003, description.at(0), "there is no VIEW");
+        report.add(8003, description.at(0), "VIEW is missing");
         return;
     }
     if (const char* fault = views_fault(views, parts)) {
-        report.add(8003, views.at(0), "%s", fault);
+        report.add(8003, views.at(0), "VIEW: %s", fault);
         return;
     }
     parts.views = reinterpret_cast<const AcdfViews*>(views.data);
     parts.nodes = reinterpret_cast<const float*>(views.data + sizeof(AcdfViews));
     const float share = parts.views->diffuse_share;
     if (!(share >= 0.0f && share < 1.0f))
-        report.add(8005, views.at(offsetof(AcdfViews, diffuse_share)), "it is %g", static_cast<double>(share));
+        report.add(8005, views.at(offsetof(AcdfViews, diffuse_share)), "`diffuse_share` is not in [0, 1)");
     check_nodes(views, report, parts);
 }
 

@@ -5,7 +5,6 @@
 #include "memory.h"
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include "check/kinds.h"
-#include "check/signatures.h"
 #include "message.h"
 #endif
 
@@ -29,7 +28,7 @@ void Report::add(int rule, u64 offset, const char* format, ...) noexcept {
     va_start(arguments, format);
     write_message(detail, sizeof detail, format, arguments);
     va_end(arguments);
-    pass({rule, offset, find_rule(rule), detail});
+    pass({rule, offset, detail});
 }
 #endif
 
@@ -42,11 +41,7 @@ constexpr u8 magic[ACDF_MAGIC_SIZE] = ACDF_MAGIC_BYTES;
 // False where the rest cannot be read with any meaning.
 bool check_start(const u8* bytes, u64 size, Report& report) {
     if (size != 0 && std::memcmp(bytes, magic, size < sizeof magic ? size : sizeof magic) != 0) {
-#ifdef ACDF_ENVIRONMENT_ONLY
-        report.add(2002, 0);
-#else
-        report.add(2002, 0, "%s", what_is_it(bytes, size));
-#endif
+        report.add(2002, 0, "this is not an .acdf file, or its first bytes are damaged");
         return false;
     }
     if (size < sizeof(AcdfHeader)) {
@@ -100,10 +95,11 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
                        "feature bit %u is unknown: a newer reader is needed", bit);
     for (u32 i = 0; i < 5; ++i)
         if (header.reserved[i] != 0)
-            report.add(2008, offsetof(AcdfHeader, reserved) + 4 * i, "it is %08x", header.reserved[i]);
+            report.add(2008, offsetof(AcdfHeader, reserved) + 4 * i, "reserved bytes of the header are not zero");
     if (!table_ok)
         report.add(3001, offsetof(AcdfHeader, chunk_count),
-                   count_ok ? "the table of %u chunks ends after the file" : "%u chunks", header.chunk_count);
+                   count_ok ? "the table of %u chunks ends after the file" : "there are %u chunks, not 1 to 64",
+                   header.chunk_count);
     return table_ok;
 }
 
@@ -147,11 +143,12 @@ void check_type_and_flags(const ChunkTable& table, u32 i, u32 kind, Report& repo
     const ChunkName name(chunk.type);
     const bool critical = chunk.flags & ACDF_CHUNK_FLAG_CRITICAL;
     if (!is_all_printable(chunk.type))
-        report.add(3014, at, "chunk %u: %08x, in the order of its bytes '%s'", i, chunk.type, name.text);
+        report.add(3014, at, "the type of chunk %u is not four printable characters", i);
     else if (known < 0 && critical)
         report.add(3002, at, "the critical chunk '%s' (%08x) is unknown: a newer reader is needed", name.text,
                    chunk.type);
-    if (known >= 0 && !belongs(known, kind)) report.add(3013, at, "'%s' with kind %u", name.text, kind);
+    if (known >= 0 && !belongs(known, kind))
+        report.add(3013, at, "'%s' is no chunk of files of kind %u", name.text, kind);
     for (u32 j = 0; j < i; ++j)
         if (table.chunks[j].type == chunk.type) {
             report.add(3003, at, "chunks %u and %u are both '%s'", j, i, name.text);
@@ -165,7 +162,7 @@ void check_type_and_flags(const ChunkTable& table, u32 i, u32 kind, Report& repo
     if (chunk.codec > last_codec)
         report.add(3005, at + offsetof(AcdfChunk, codec), "codec %u of '%s' is unknown", chunk.codec, name.text);
     if ((chunk.flags & ~ACDF_CHUNK_FLAG_CRITICAL) != 0)
-        report.add(3009, at + offsetof(AcdfChunk, flags), "flags %08x of '%s'", chunk.flags, name.text);
+        report.add(3009, at + offsetof(AcdfChunk, flags), "unknown flags of '%s'", name.text);
     else if (known >= 0 && critical != is_critical(known))
         report.add(3009, at + offsetof(AcdfChunk, flags), "'%s' is marked %s", name.text,
                    critical ? "critical" : "ancillary");
@@ -201,12 +198,10 @@ void check_lengths(const ChunkTable& table, u32 i, Report& report) {
     const u64 at = table.offset_of(i) + offsetof(AcdfChunk, raw_length);
     const ChunkName name(chunk.type);
     if (chunk.codec == ACDF_CODEC_NONE && chunk.raw_length != chunk.stored_length)
-        report.add(3010, at, "'%s': %llu stored, %llu raw", name.text, static_cast<ull>(chunk.stored_length),
-                   static_cast<ull>(chunk.raw_length));
+        report.add(3010, at, "'%s' is not deflated, but `raw_length` is not `stored_length`", name.text);
     // Division, so that nothing overflows. The longest match of deflate makes 258 bytes of 2 bits.
     if (chunk.codec != ACDF_CODEC_NONE && chunk.raw_length / 1032 > chunk.stored_length)
-        report.add(3011, at, "'%s': %llu bytes cannot come from %llu", name.text,
-                   static_cast<ull>(chunk.raw_length), static_cast<ull>(chunk.stored_length));
+        report.add(3011, at, "'%s' cannot inflate to as much as `raw_length`", name.text);
 }
 
 bool has_chunk(const ChunkTable& table, u32 type) {
@@ -252,7 +247,7 @@ void check_padding(const ChunkTable& table, const u8* bytes, u64 size, Report& r
         const u64 end = rounded < size ? rounded : size;
         for (u64 at = begin; at < end; ++at)
             if (bytes[at] != 0) {
-                report.add(4002, at, "it is %02x", bytes[at]);
+                report.add(4002, at, "padding is not zero");
                 break;
             }
         if (i < table.count) begin = table.chunks[i].offset + table.chunks[i].stored_length;
@@ -282,9 +277,9 @@ void check_halved(const Payloads& payloads, [[maybe_unused]] u32 kind, const Acd
                   Report& report, Parts& parts) {
     const Payload& halvings = payloads.of[chunk_halvings];
     if (const char* other = kind == ACDF_KIND_TABLE ? nullptr : beside_halvings(payloads, kind)) // else rule 3013
-        report.add(6035, halvings.at(0), "%s is there, too", other);
+        report.add(6035, halvings.at(0), "%s is there beside HALV", other);
     if (parts.description->fit != ACDF_FIT_VARIANCE)
-        report.add(6035, halvings.at(0), "with fit %u", parts.description->fit);
+        report.add(6035, halvings.at(0), "HALV with fit %u", parts.description->fit);
     if (report.stopped()) return;
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (kind == ACDF_KIND_TABLE) return check_table_kind(payloads, report, allocator, parts);

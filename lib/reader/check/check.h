@@ -2,9 +2,6 @@
 #pragma once
 
 #include "sources.h"
-#ifndef ACDF_ENVIRONMENT_ONLY
-#include "check/rules.h"
-#endif
 
 #include <acdf/halvings.h>
 #include <acdf/reader.h>
@@ -22,7 +19,6 @@ struct Finding {
     int number = 0; ///< of the rule
     u64 offset = 0; ///< byte in the file; for a compressed chunk that of its first stored byte
 #ifndef ACDF_ENVIRONMENT_ONLY
-    const Rule* rule = nullptr;
     const char* detail = ""; ///< what was found and, if it helps, what to do; valid during the call
 #endif
 };

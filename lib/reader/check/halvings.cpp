@@ -30,8 +30,7 @@ public:
 
     // Only whole trees become part of `parts`: other chunks go through them. `bins`: BINS, where each has a tree.
     void run(const AcdfAllocator& allocator, const Payload* bins) {
-        if (payload_.size < sizeof header_)
-            return report_.add(6030, payload_.at(0), "%llu bytes", static_cast<ull>(payload_.size));
+        if (payload_.size < sizeof header_) return report_.add(6030, payload_.at(0), "HALV ends early");
         u64 trees = bins ? 0 : 1;
         for (u32 bin = 0; bins && bin < parts_.description->bin_count; ++bin)
             trees += parts_.bins[bin].share > 0.0f;
@@ -62,10 +61,12 @@ private:
         const u64 size = codes_at + 4 * words_for(u64{header_.halving_count} * bits);
         if (bits < ACDF_LEAST_CODE_BITS || bits > ACDF_MOST_CODE_BITS ||
             header_.halving_count > ACDF_MOST_HALVINGS || header_.reserved[0] != 0 || header_.reserved[1] != 0)
-            report_.add(6030, payload_.at(0), "%u halvings, codes of %u bits", header_.halving_count, bits);
+            report_.add(6030, payload_.at(0),
+                        "HALV has %u halvings, codes of %u bits, or reserved fields that are not zero",
+                        header_.halving_count, bits);
         else if (payload_.size != size)
-            report_.add(6030, payload_.at(0), "%llu bytes instead of %llu", static_cast<ull>(payload_.size),
-                        static_cast<ull>(size));
+            report_.add(6030, payload_.at(0), "HALV has %llu bytes instead of %llu",
+                        static_cast<ull>(payload_.size), static_cast<ull>(size));
         else return true;
         return false;
     }
@@ -74,7 +75,8 @@ private:
 
     bool has_all() {
         if (made_ != header_.halving_count)
-            report_.add(6031, structure_.place(), "%u nodes are halved, not %u", made_, header_.halving_count);
+            report_.add(6031, structure_.place(), "%u nodes of HALV are halved, not %u", made_,
+                        header_.halving_count);
         return made_ == header_.halving_count;
     }
 
@@ -92,8 +94,8 @@ private:
         }
         if (!has_all()) return false;
         if (wrong != none)
-            report_.add(9007, payload.at(0) + u64{wrong} * sizeof(AcdfBin), "bin %u: %u instead of %u", wrong,
-                        parts_.bins[wrong].root, right_root);
+            report_.add(9007, payload.at(0) + u64{wrong} * sizeof(AcdfBin), "bin %u has the root %u instead of %u",
+                        wrong, parts_.bins[wrong].root, right_root);
         return wrong == none;
     }
 #endif
@@ -101,7 +103,7 @@ private:
     void check_zero(Bits& bits, const char* what) {
         const u64 at = bits.place();
         while (bits.has(1))
-            if (bits.take(1)) return report_.add(6034, at, "behind the %s", what);
+            if (bits.take(1)) return report_.add(6034, at, "padding behind the %s of HALV is not zero", what);
     }
 
     // The node that comes next, in steps_ and box_, with all below it: at most 31 deep for each axis, whose steps
@@ -115,17 +117,19 @@ private:
         }
         if (!halved) return true;
         if (made_ == header_.halving_count || !structure_.has(axis_bits_)) {
-            report_.add(6031, at, "more than %u nodes are halved", header_.halving_count);
+            report_.add(6031, at, "more than %u nodes of HALV are halved, or halves are missing",
+                        header_.halving_count);
             return false;
         }
         const u32 axis = axis_bits_ > 0 ? structure_.take(axis_bits_) : 0;
         if (axis >= axes_ || box_[axis].end[1] - box_[axis].end[0] < 2) {
-            report_.add(6032, at, axis >= axes_ ? "axis %u of %u" : "axis %u: one step is left", axis, axes_);
+            report_.add(6032, at, "node %u is halved on axis %u, which is not sampled or has one step left", made_,
+                        axis);
             return false;
         }
         const u32 code = codes_.take(header_.code_bits), last = (1u << header_.code_bits) - 1;
         if (dark || (code != 0 && code != last && steps_[axis].end[1] - steps_[axis].end[0] < 2)) {
-            report_.add(6033, at, dark ? "node %u has none" : "node %u has one", made_);
+            report_.add(6033, at, "node %u is halved, but has too few random numbers", made_);
             return false;
         }
         return divide(axis, code);

@@ -27,15 +27,15 @@ bool check_bins(const Payload& payload, Report& report, Parts& parts) noexcept {
         const float share = parts.bins[i].share;
         if (share >= 0.0f && std::isfinite(share)) continue;
         right = false;
-        report.add(6017, payload.at(i * sizeof(AcdfBin) + offsetof(AcdfBin, share)), "bin %u: it is %g", i,
-                   static_cast<double>(share));
+        report.add(6017, payload.at(i * sizeof(AcdfBin) + offsetof(AcdfBin, share)),
+                   "the share of bin %u is negative or not finite", i);
     }
     return right;
 }
 
 void check_bin_count(const Payload& payload, int rule, u64 bins, Report& report, const Parts& parts) noexcept {
     if (bins != parts.description->bin_count)
-        report.add(rule, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins, its axes make %llu",
+        report.add(rule, payload.at(offsetof(AcdfDescription, bin_count)), "%u bins, but the axes make %llu",
                    parts.description->bin_count, static_cast<ull>(bins));
 }
 

@@ -27,7 +27,8 @@ constexpr WantedAxis grid_axes[2] = {
 void check_local_axes(const Payload& payload, Report& report, const Parts& parts) {
     const AcdfDescription& d = *parts.description;
     if (d.axis_count != 3 && d.axis_count != 4) {
-        report.add(7003, payload.at(offsetof(AcdfDescription, axis_count)), "it has %u axes", d.axis_count);
+        report.add(7003, payload.at(offsetof(AcdfDescription, axis_count)), "a local environment with %u axes",
+                   d.axis_count);
         return;
     }
     check_environment_axes(payload, report, parts);
@@ -35,7 +36,9 @@ void check_local_axes(const Payload& payload, Report& report, const Parts& parts
     for (u32 i = 2; i < d.axis_count; ++i) {
         const AcdfAxis& axis = parts.axes[i];
         const char* fault = d.axis_count == 3 ? octahedral_fault(axis) : axis_fault(axis, grid_axes[i - 2]);
-        if (fault) report.add(7003, payload.at(sizeof d + i * sizeof axis), "axis %u: the %s differs", i, fault);
+        if (fault)
+            report.add(7003, payload.at(sizeof d + i * sizeof axis),
+                       "axis %u is not one of normals: the %s differs", i, fault);
         bins *= axis.resolution;
     }
     if (d.bin_count != 0) check_bin_count(payload, 7004, bins, report, parts); // 0: rule 5007
@@ -55,9 +58,9 @@ void check_local_kind(const Payload& description, const Payload& payload, Report
         return;
     }
     if (!(header->cosine_share >= 0.0f && header->cosine_share < 1.0f))
-        report.add(7005, payload.at(0), "`cosine_share` is %g", static_cast<double>(header->cosine_share));
+        report.add(7005, payload.at(0), "`cosine_share` is not in [0, 1)");
     if (header->reserved != 0)
-        report.add(7005, payload.at(offsetof(AcdfLocalHeader, reserved)), "`reserved` is %u", header->reserved);
+        report.add(7005, payload.at(offsetof(AcdfLocalHeader, reserved)), "`reserved` of LOCL is not zero");
     parts.local = header;
 }
 

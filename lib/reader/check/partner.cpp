@@ -24,7 +24,7 @@ const char* header_fault(const Payload& payload, u32 kind, u32 bins) {
 
 void check_partner(const Payload& payload, u32 kind, Report& report, Parts& parts) noexcept {
     if (const char* fault = header_fault(payload, kind, parts.description->bin_count)) {
-        report.add(5020, payload.at(0), "%s", fault);
+        report.add(5020, payload.at(0), "COMP: %s", fault);
         return;
     }
     const auto* partner = reinterpret_cast<const AcdfPartner*>(payload.data);
@@ -33,14 +33,16 @@ void check_partner(const Payload& payload, u32 kind, Report& report, Parts& part
         (partner->kind == ACDF_PARTNER_TABLE) != table)
         report.add(5021, payload.at(0), "an MIS partner of kind %u", partner->kind);
     if (partner->heuristic > ACDF_HEURISTIC_POWER)
-        report.add(5021, payload.at(offsetof(AcdfPartner, heuristic)), "heuristic %u", partner->heuristic);
+        report.add(5021, payload.at(offsetof(AcdfPartner, heuristic)), "an MIS heuristic of number %u",
+                   partner->heuristic);
     const auto* records = reinterpret_cast<const AcdfPartnerRecord*>(partner + 1);
     for (u32 i = 0; i < partner->record_count && !report.stopped(); ++i) {
         const AcdfPartnerRecord& r = records[i];
         if (is_share(r.recommended_light_share) && r.flux >= 0.0f && std::isfinite(r.flux) &&
             (r.flux == 0.0f || kind == ACDF_KIND_LOCAL))
             continue;
-        report.add(5020, payload.at(sizeof *partner + i * sizeof r), "record %u", i);
+        report.add(5020, payload.at(sizeof *partner + i * sizeof r),
+                   "record %u of COMP has a share or a flux out of range", i);
     }
     parts.partner = partner;
 }

@@ -18,7 +18,8 @@ void check_table_bins(const Payload& payload, Report& report, Parts& parts) {
         return;
     }
     for (u32 i = 0; i < count; ++i) sum += static_cast<double>(parts.bins[i].share);
-    if (!(std::fabs(sum - 1.0) <= 0x1p-20)) report.add(9005, payload.at(0), "their sum is %.9g", sum);
+    if (!(std::fabs(sum - 1.0) <= 0x1p-20))
+        report.add(9005, payload.at(0), "the shares of the bins do not add up to 1");
 }
 
 void check_table_weights(const Payload& payload, Report& report, const AcdfDescription& d) {
@@ -27,8 +28,8 @@ void check_table_weights(const Payload& payload, Report& report, const AcdfDescr
     if (d.channels > ACDF_CHANNELS_LARGEST) return; // rule 5019
     for (u32 i = 0; i < 3; ++i)
         if (!std::isfinite(w[i]) || w[i] < 0.0) return; // rule 5009
-    report.add(9006, payload.at(offsetof(AcdfDescription, channels)), "channels %u, weights %g, %g, %g", d.channels,
-               w[0], w[1], w[2]);
+    report.add(9006, payload.at(offsetof(AcdfDescription, channels)),
+               "a table whose channels or channel weights are not 0 and 1, 0, 0");
 }
 
 void check_table_axes(const Payload& payload, Report& report, const Parts& parts) {
@@ -40,7 +41,8 @@ void check_table_axes(const Payload& payload, Report& report, const Parts& parts
         const AcdfAxis& axis = parts.axes[i];
         const u64 at = payload.at(sizeof d + i * sizeof axis);
         if (axis.measure == ACDF_MEASURE_COSINE || axis.measure == ACDF_MEASURE_HALF)
-            report.add(9001, at + offsetof(AcdfAxis, measure), "axis %u: it is %u", i, axis.measure);
+            report.add(9001, at + offsetof(AcdfAxis, measure), "axis %u of a table is of measure %u", i,
+                       axis.measure);
         if (axis.role == ACDF_AXIS_INDEXED) {
             if (sampled)
                 report.add(9002, at + offsetof(AcdfAxis, role), "axis %u is indexed, the one before is not", i);
@@ -49,8 +51,8 @@ void check_table_axes(const Payload& payload, Report& report, const Parts& parts
         sampled = sampled || axis.role == ACDF_AXIS_SAMPLED;
         const bool range = std::isfinite(axis.low) && std::isfinite(axis.high) && axis.low != axis.high;
         if (range && axis.resolution >= 1 && axis.resolution <= most_steps && !acdf_table_axis_steps(&axis))
-            report.add(9004, at + offsetof(AcdfAxis, low), "axis %u: %u steps from %g to %g", i, axis.resolution,
-                       axis.low, axis.high);
+            report.add(9004, at + offsetof(AcdfAxis, low),
+                       "the steps of axis %u are too small or its ends too large", i);
     }
     if (bins != 0) check_bin_count(payload, 9003, bins, report, parts); // 0: rule 5014
 }

@@ -16,7 +16,7 @@ bool check_top(Bits& bits, std::uint32_t count, Report& report, const Parts& par
         const bool own = bits.take(1);
         found += own;
         if (own && !at.top) {
-            report.add(6037, place, "halving %u has one, the one above it has none", at.node);
+            report.add(6037, place, "halving %u has codes of rows, the one above it has none", at.node);
             return false;
         }
         const std::uint32_t link = parts.halvings[at.node].link;
@@ -24,12 +24,12 @@ bool check_top(Bits& bits, std::uint32_t count, Report& report, const Parts& par
         if (!(link >> 3 & 1u)) open[waiting++] = {at.node + 1, own};
     }
     if (found != count) {
-        report.add(6037, begin, "%u halvings have them, not %u", found, count);
+        report.add(6037, begin, "%u halvings have codes of rows, not %u", found, count);
         return false;
     }
     while (bits.has(1))
         if (bits.take(1)) {
-            report.add(6038, begin, "behind the splits");
+            report.add(6038, begin, "padding behind the splits is not zero");
             return false;
         }
     return true;

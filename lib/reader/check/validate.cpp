@@ -14,7 +14,7 @@ Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* co
     Verdict verdict;
     if (size > limits.max_file_bytes) {
         Report report(sink, context);
-        report.add(1004, 0, "%llu bytes, the limit is %llu", static_cast<ull>(size),
+        report.add(1004, 0, "the file has %llu bytes, the limit is %llu", static_cast<ull>(size),
                    static_cast<ull>(limits.max_file_bytes));
         return report.verdict();
     }
@@ -22,7 +22,7 @@ Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* co
         copy = std::malloc(size ? size : 1);
         if (!copy) {
             Report report(sink, context);
-            report.add(1003, 0, "%llu bytes for a copy", static_cast<ull>(size));
+            report.add(1003, 0, "no memory for a copy of %llu bytes", static_cast<ull>(size));
             return report.verdict();
         }
         data = static_cast<const u8*>(std::memcpy(copy, bytes, size));

@@ -75,40 +75,13 @@ TEST(Damage, everyByteUnderRightCrcsIsSafe) {
     EXPECT_GT(accepted, 100);
 }
 
-TEST(Damage, otherFormatsAreNamed) {
-    const auto message_of = [](std::string start, std::size_t size = 1000) {
-        Bytes file(start.begin(), start.end());
-        file.resize(size);
-        const Status status = load(file);
-        EXPECT_EQ(status.rule, 2002);
-        return std::string(status.message);
-    };
-    using namespace std::string_literals;
-    const auto expect = [](const std::string& message, const char* word) {
-        EXPECT_NE(message.find(word), std::string::npos) << message;
-    };
-    expect(message_of("\x76\x2f\x31\x01"), "OpenEXR");
-    expect(message_of("#?RADIANCE\n"), "Radiance HDR");
-    expect(message_of("#?RGBE\n"), "Radiance HDR");
-    expect(message_of("\x89PNG\r\n\x1a\n"), "PNG");
-    expect(message_of("\x93NUMPY"), "NumPy");
-    expect(message_of("II*\0"s), "TIFF");
-    expect(message_of("MM\0*"s), "TIFF");
-    expect(message_of("tensor_file\0"s), "RGL");
-    expect(message_of("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0"s, 12 + 3 * 8 * 90 * 90 * 180), "MERL");
-    expect(message_of("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0"s), "not an .acdf file");
-    expect(message_of("\xab"
-                      "ACDF  \xbb\n\x1a\n"),
-           "CR LF into LF");
-    expect(message_of("\xab"
-                      "ACDF  \xbb\r\r\n\x1a\r\n"),
-           "LF into CR LF");
-    expect(message_of("+ACDF  ;\r\n\x1a\n"), "highest bit");
-    expect(message_of("\xab"
-                      "ACDF\0"s),
-           "damaged");
-    expect(message_of("hello"), "not an .acdf file");
-    EXPECT_EQ(load({'P', 'N'}).rule, 2002); // shorter than any magic
+TEST(Damage, otherFormatsAreRefused) {
+    for (const char* start : {"\x76\x2f\x31\x01", "#?RADIANCE\n", "hello", "PN"}) {
+        Bytes file(start, start + std::strlen(start));
+        EXPECT_EQ(load(file).rule, 2002);
+        file.resize(1000);
+        EXPECT_EQ(load(file).rule, 2002);
+    }
 }
 
 // ---- versions -------------------------------------------------------------------------------------------

@@ -55,9 +55,9 @@ inline Findings findings(const Bytes& bytes, const acdf::Limits& limits = {}) {
     acdf::validate(
         exact.data(), exact.size(),
         [&](const acdf::Finding& finding) {
-            out.rules.insert(finding.rule->number);
+            out.rules.insert(finding.number);
             out.last_offset = finding.offset;
-            text << finding.rule->number << " at " << finding.offset << ": " << finding.detail << '\n';
+            text << finding.number << " at " << finding.offset << ": " << finding.detail << '\n';
         },
         limits);
     out.text = text.str();

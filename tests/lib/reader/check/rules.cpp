@@ -1,4 +1,5 @@
 // For every rule of the table a file that breaks it and no other.
+#include "rules/rules.h"
 #include "reader/check/rule_codes.h"
 #include "tests/lib/reader/brdf_builder.h"
 #include "tests/lib/reader/check/broken.h"

@@ -1,4 +1,4 @@
-#include "check/signatures.h"
+#include "rules/signatures.h"
 
 #include <cstring>
 
@@ -40,11 +40,11 @@ constexpr Signature signatures[] = {
 
 } // namespace
 
-const char* what_is_it(const u8* bytes, u64 size) noexcept {
+const char* what_is_it(const std::uint8_t* bytes, std::size_t size) noexcept {
     for (const Signature& s : signatures)
         if (size >= s.size && std::memcmp(bytes, s.bytes, s.size) == 0) return s.text;
-    u32 dims[3];
-    constexpr u64 merl_size = 12 + u64{3} * 8 * 90 * 90 * 180;
+    std::uint32_t dims[3];
+    constexpr std::size_t merl_size = 12 + std::size_t{3} * 8 * 90 * 90 * 180;
     if (size == merl_size) {
         std::memcpy(dims, bytes, sizeof dims);
         if (dims[0] == 90 && dims[1] == 90 && dims[2] == 180)

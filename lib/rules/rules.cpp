@@ -1,4 +1,4 @@
-#include "check/rules.h"
+#include "rules/rules.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-// The rules of format/SPEC.md: one table, used by the checks, by `acdf validate` and by the tests.
+// The rules of format/SPEC.md in words: for `acdf validate` and tests. The reader knows their numbers alone.
 #pragma once
 
 #include <cstddef>
