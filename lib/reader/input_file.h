@@ -21,12 +21,7 @@ public:
     const char* read(void* out, u64 size, u64& done) noexcept;
 
 private:
-#if defined(_WIN32)
-    void* handle_ = nullptr;
-    char error_[160] = {};
-#else
     int descriptor_ = -1;
-#endif
 };
 
 } // namespace acdf

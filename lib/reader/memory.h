@@ -11,9 +11,6 @@ namespace acdf {
 /// At least `bytes`, aligned to ACDF_ALIGNMENT; data is null where there are none.
 AcdfBlock take_block(const AcdfAllocator& allocator, std::size_t bytes) noexcept;
 
-/// Bytes of a large page of most systems. Blocks of the C library ask for them where whole ones lie in them.
-constexpr std::size_t kLargePage = std::size_t{1} << 21;
-
 /// Gives back what take_block took from the same allocator, if anything, and
 /// leaves `block` empty.
 void give_block(const AcdfAllocator& allocator, AcdfBlock& block) noexcept;

@@ -16,7 +16,7 @@ PUBLIC = ("acdf/acdf.h", "acdf/reader.h", "acdf/environment_view.h", "acdf/views
 PUBLIC_SMALL = PUBLIC[:3]
 SMALL = ("c_api.cpp", "file.cpp", "check/check.cpp", "check/partner.cpp", "check/description.cpp",
          "check/halvings.cpp", "check/rule_codes.cpp", "halved_tree.cpp", "inflate.cpp", "payloads.cpp", "memory.cpp", "message.cpp",
-         "aligned_memory_posix.cpp", "aligned_memory_windows.cpp", "input_file_posix.cpp", "input_file_windows.cpp")
+         "input_file.cpp")
 BANNER = """// The reader of .acdf files, made by lib/reader/single/make_single.py from lib/reader: change that, not this. The licence
 // is that of the project (LICENSE). {what}
 """
