@@ -72,32 +72,6 @@ TEST_F(Open, aBrokenFileIsNamed) {
     EXPECT_NE(message.find("broken.acdf: truncated: 300 bytes of"), std::string::npos) << message;
 }
 
-TEST_F(Open, otherKindsOfFilesAreNamed) {
-    const auto message = [&](const std::string& content) {
-        File file;
-        const Status status = File::open(write("a.acdf", {content.begin(), content.end()}).c_str(), file);
-        EXPECT_EQ(status.rule, 2002);
-        return std::string(status.message);
-    };
-    const auto expect = [&](const std::string& content, const char* name) {
-        EXPECT_NE(message(content).find(name), std::string::npos) << message(content);
-    };
-    expect("version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 1\n", "this is a Git LFS pointer");
-    expect("/annex/objects/SHA256E-s1--00.acdf\n", "this is a git-annex pointer");
-    for (const char* page :
-         {"<!DOCTYPE html><html>", "<!doctype html>", "<html>", "<HTML>", "<?xml version=\"1.0\"?>"})
-        expect(page, "this is a web page");
-    expect("\xab"
-           "ACDF  \xbb\r\n\x1a\r\n",
-           "Git turned LF into CR LF");
-    expect("\xab"
-           "ACDF  \xbb\r\r\n\x1a\r\n",
-           "turned LF into CR LF");
-    expect("\xab"
-           "ACDF  \xbb\n\x1a\n",
-           "turned CR LF into LF");
-}
-
 TEST_F(Open, messagesAreOneLineOfText) {
     File file;
     std::string name = "evil\nname\x1b[2J-";

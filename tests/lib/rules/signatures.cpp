@@ -40,4 +40,27 @@ TEST(Signatures, nameOtherFormats) {
     EXPECT_STREQ(acdf::what_is_it(reinterpret_cast<const std::uint8_t*>("PN"), 2), "this is not an .acdf file");
 }
 
+TEST(Signatures, nameWhatIsSentOrConvertedInPlaceOfAFile) {
+    const auto what = [](const std::string& content) {
+        return std::string(acdf::what_is_it(reinterpret_cast<const std::uint8_t*>(content.data()), content.size()));
+    };
+    const auto expect = [&](const std::string& content, const char* name) {
+        EXPECT_NE(what(content).find(name), std::string::npos) << what(content);
+    };
+    expect("version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 1\n", "this is a Git LFS pointer");
+    expect("/annex/objects/SHA256E-s1--00.acdf\n", "this is a git-annex pointer");
+    for (const char* page :
+         {"<!DOCTYPE html><html>", "<!doctype html>", "<html>", "<HTML>", "<?xml version=\"1.0\"?>"})
+        expect(page, "this is a web page");
+    expect("\xab"
+           "ACDF  \xbb\r\n\x1a\r\n",
+           "Git turned LF into CR LF");
+    expect("\xab"
+           "ACDF  \xbb\r\r\n\x1a\r\n",
+           "turned LF into CR LF");
+    expect("\xab"
+           "ACDF  \xbb\n\x1a\n",
+           "turned CR LF into LF");
+}
+
 } // namespace
