@@ -1,72 +1,8 @@
-// The C interface: acdf::File behind an opaque pointer. malloc and not new, so that a C program that links the
-// reader needs no C++ runtime library.
+// What an open file holds.
 #include "check/check.h"
 #include "opened_file.h"
 
 #include <cstring>
-
-static_assert(sizeof(AcdfError::message) == sizeof(acdf::Status::message));
-static_assert(ACDF_UNSUPPORTED == static_cast<int>(acdf::ErrorCode::unsupported));
-
-namespace {
-
-void report(const acdf::Status& status, AcdfError* error) {
-    if (!error) return;
-    error->code = static_cast<AcdfErrorCode>(status.code);
-    error->rule = status.rule;
-    error->offset = status.offset;
-    std::memcpy(error->message, status.message, sizeof(status.message));
-}
-
-acdf::LoadOptions of(const AcdfLoadOptions& from) {
-    acdf::LoadOptions options;
-    if (from.max_file_bytes > 0) options.limits.max_file_bytes = from.max_file_bytes;
-    if (from.max_inflated_bytes > 0) options.limits.max_inflated_bytes = from.max_inflated_bytes;
-    options.tables = !from.plain;
-    options.allocator = from.allocator;
-    return options;
-}
-
-AcdfLoadOptions plain() {
-    AcdfLoadOptions options = {};
-    options.plain = 1;
-    return options;
-}
-
-} // namespace
-
-AcdfFile* acdf_open_with(const char* path, const AcdfLoadOptions* options, AcdfError* error) {
-    acdf::Status status;
-    AcdfFile* const file = acdf::open_path(path, of(options ? *options : AcdfLoadOptions{}), status);
-    report(status, error);
-    return file;
-}
-AcdfFile* acdf_from_memory_with(const void* data, size_t size, const AcdfLoadOptions* options, AcdfError* error) {
-    acdf::Status status;
-    AcdfFile* const file =
-        acdf::open_bytes(data, data ? size : 0, of(options ? *options : AcdfLoadOptions{}), status);
-    report(status, error);
-    return file;
-}
-
-AcdfFile* acdf_open(const char* path, AcdfError* error) {
-    const AcdfLoadOptions options = {};
-    return acdf_open_with(path, &options, error);
-}
-AcdfFile* acdf_open_plain(const char* path, AcdfError* error) {
-    const AcdfLoadOptions options = plain();
-    return acdf_open_with(path, &options, error);
-}
-AcdfFile* acdf_from_memory(const void* data, size_t size, AcdfError* error) {
-    const AcdfLoadOptions options = {};
-    return acdf_from_memory_with(data, size, &options, error);
-}
-AcdfFile* acdf_from_memory_plain(const void* data, size_t size, AcdfError* error) {
-    const AcdfLoadOptions options = plain();
-    return acdf_from_memory_with(data, size, &options, error);
-}
-
-void acdf_close(AcdfFile* file) { acdf::close_file(file); }
 
 namespace {
 
@@ -104,6 +40,12 @@ int acdf_memory(const AcdfFile* file, AcdfMove* moves) {
     return count;
 }
 #endif
+
+const AcdfPartner* acdf_partner(const AcdfFile* file) { return file->partner; }
+const uint8_t* acdf_tree(const AcdfFile* file, uint32_t* units) {
+    if (units) *units = file->tree_units;
+    return file->tree;
+}
 
 AcdfKind acdf_kind(const AcdfFile* file) { return file->kind(); }
 uint64_t acdf_table_bytes(const AcdfFile* file) { return file->table_bytes(); }

@@ -1,4 +1,4 @@
-// `File`: ownership and access. The rules are checked in check*.cpp.
+// Opening and closing. The rules are checked in check/*.cpp; c_api.cpp says what an open file holds.
 #include "check/check.h"
 #include "check/rule_codes.h"
 #include "halved_tree.h"
@@ -36,7 +36,7 @@ void tidy(char* message) {
 }
 
 // `detail` may be empty. Statuses are written in place: copies of their messages would be half of what opens files.
-void fail_at(Status& status, int rule, u64 offset, const char* detail) {
+void fail_at(AcdfError& status, int rule, u64 offset, const char* detail) {
     status.code = code_of(rule);
     status.rule = rule;
     status.offset = offset;
@@ -49,7 +49,7 @@ void fail_at(Status& status, int rule, u64 offset, const char* detail) {
 __attribute__((format(printf, 3, 4)))
 #endif
 bool
-fail(Status& status, int rule, const char* format, ...) {
+fail(AcdfError& status, int rule, const char* format, ...) {
     char detail[160];
     va_list arguments;
     va_start(arguments, format);
@@ -60,7 +60,7 @@ fail(Status& status, int rule, const char* format, ...) {
 }
 
 // Puts the path in front; of a long one the end, which distinguishes files.
-void name_file(Status& status, const char* path) {
+void name_file(AcdfError& status, const char* path) {
     constexpr std::size_t longest = 100;
     const std::size_t length = std::strlen(path);
     const char* shown = length > longest ? path + (length - longest) : path;
@@ -72,28 +72,28 @@ void name_file(Status& status, const char* path) {
 }
 
 bool first_error(const Finding& finding, void* status) {
-    if (code_of(finding.number) == ErrorCode::none) return true;
+    if (code_of(finding.number) == ACDF_OK) return true;
 #ifdef ACDF_ENVIRONMENT_ONLY
-    fail_at(*static_cast<Status*>(status), finding.number, finding.offset, "");
+    fail_at(*static_cast<AcdfError*>(status), finding.number, finding.offset, "");
 #else
-    fail_at(*static_cast<Status*>(status), finding.number, finding.offset, finding.detail);
+    fail_at(*static_cast<AcdfError*>(status), finding.number, finding.offset, finding.detail);
 #endif
     return false;
 }
 
 // What follows is false, and `status` says why, where it fails.
 
-bool take(const AcdfAllocator& allocator, u64 size, AcdfBlock& block, Status& status) {
+bool take(const AcdfAllocator& allocator, u64 size, AcdfBlock& block, AcdfError& status) {
     if (size < SIZE_MAX - ACDF_ALIGNMENT) block = take_block(allocator, static_cast<std::size_t>(size));
     return block.data || fail(status, 1003, "no memory for %llu bytes", static_cast<ull>(size));
 }
 
-bool is_within(u64 size, const Limits& limits, Status& status) {
+bool is_within(u64 size, const Limits& limits, AcdfError& status) {
     return size <= limits.max_file_bytes || fail(status, 1004, "the file has %llu bytes, the limit is %llu",
                                                  static_cast<ull>(size), static_cast<ull>(limits.max_file_bytes));
 }
 
-bool read_path(const char* path, const LoadOptions& options, AcdfBlock& block, u64& size, Status& status) {
+bool read_path(const char* path, const LoadOptions& options, AcdfBlock& block, u64& size, AcdfError& status) {
     InputFile input;
     if (const char* wrong = input.open(path)) return fail(status, 1001, "%s", wrong);
     if (const char* wrong = input.measure(size)) return fail(status, 1002, "%s", wrong);
@@ -147,11 +147,11 @@ void take_parts(const Parts& parts, AcdfFile& file) noexcept {
 }
 
 // Checks the bytes of a file, and makes its view. On failure the caller gives its memory back.
-bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
+bool load(const LoadOptions& options, AcdfFile& file, AcdfError& status) noexcept {
     Parts parts;
     check(file.bytes, file.size, options.limits, first_error, &status, parts, options.allocator);
     file.memory[1] = parts.inflated;
-    if (!status.ok()) return false;
+    if (status.code != ACDF_OK) return false;
     take_parts(parts, file);
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (file.kind() == ACDF_KIND_INDEXED) {
@@ -177,7 +177,7 @@ bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
 
 // Of bytes that the file owns, if `owned` has them.
 AcdfFile* load(const void* data, std::size_t size, const LoadOptions& options, AcdfBlock owned,
-               Status& status) noexcept {
+               AcdfError& status) noexcept {
     AcdfFile file = {};
     file.bytes = static_cast<const u8*>(data);
     file.size = size;
@@ -189,9 +189,30 @@ AcdfFile* load(const void* data, std::size_t size, const LoadOptions& options, A
     return nullptr;
 }
 
+LoadOptions given(const AcdfLoadOptions* from) {
+    LoadOptions options;
+    if (!from) return options;
+    if (from->max_file_bytes > 0) options.limits.max_file_bytes = from->max_file_bytes;
+    if (from->max_inflated_bytes > 0) options.limits.max_inflated_bytes = from->max_inflated_bytes;
+    options.tables = !from->plain;
+    options.allocator = from->allocator;
+    return options;
+}
+
+// Where the outcome goes that a caller does not ask for.
+AcdfError& cleared(AcdfError* error, AcdfError& own) { return *(error ? error : &own) = {}; }
+
 } // namespace
 
-AcdfFile* open_path(const char* path, const LoadOptions& options, Status& status) noexcept {
+EnvironmentView File::environment() const noexcept { return EnvironmentView(opened_->environment); }
+
+} // namespace acdf
+
+using namespace acdf;
+
+AcdfFile* acdf_open_with(const char* path, const AcdfLoadOptions* from, AcdfError* error) {
+    AcdfError own, &status = cleared(error, own);
+    const LoadOptions options = given(from);
     AcdfBlock block = {};
     u64 size = 0;
     AcdfFile* file = nullptr;
@@ -203,8 +224,11 @@ AcdfFile* open_path(const char* path, const LoadOptions& options, Status& status
     return file;
 }
 
-AcdfFile* open_bytes(const void* data, std::size_t size, const LoadOptions& options, Status& status) noexcept {
+AcdfFile* acdf_from_memory_with(const void* data, size_t size, const AcdfLoadOptions* from, AcdfError* error) {
+    AcdfError own, &status = cleared(error, own);
+    const LoadOptions options = given(from);
     AcdfBlock copy = {};
+    if (!data) size = 0;
     if (!is_within(size, options.limits, status)) return nullptr;
     if (reinterpret_cast<std::uintptr_t>(data) % alignof(AcdfHeader) != 0) {
         if (!take(options.allocator, size, copy, status)) return nullptr;
@@ -213,62 +237,15 @@ AcdfFile* open_bytes(const void* data, std::size_t size, const LoadOptions& opti
     return load(data, size, options, copy, status);
 }
 
-void close_file(AcdfFile* file) noexcept {
+AcdfFile* acdf_open(const char* path, AcdfError* error) { return acdf_open_with(path, nullptr, error); }
+AcdfFile* acdf_from_memory(const void* data, size_t size, AcdfError* error) {
+    return acdf_from_memory_with(data, size, nullptr, error);
+}
+
+void acdf_close(AcdfFile* file) {
     if (!file) return;
     const AcdfAllocator allocator = file->allocator;
     AcdfBlock own = file->own;
     give_memory(*file);
     give_block(allocator, own);
 }
-
-File::~File() { close_file(opened_); }
-File::File(File&& other) noexcept : opened_(std::exchange(other.opened_, nullptr)) {}
-File& File::operator=(File&& other) noexcept {
-    if (this != &other) close_file(std::exchange(opened_, std::exchange(other.opened_, nullptr)));
-    return *this;
-}
-
-Status File::open(const char* path, File& file, const LoadOptions& options) noexcept {
-    Status status;
-    file = File();
-    file.opened_ = open_path(path, options, status);
-    return status;
-}
-Status File::from_memory(const void* data, std::size_t size, File& file, const LoadOptions& options) noexcept {
-    Status status;
-    file = File();
-    file.opened_ = open_bytes(data, size, options, status);
-    return status;
-}
-
-AcdfKind File::kind() const noexcept { return opened_->kind(); }
-const AcdfHeader& File::header() const noexcept { return *reinterpret_cast<const AcdfHeader*>(opened_->bytes); }
-const AcdfDescription& File::description() const noexcept { return *opened_->description; }
-const AcdfAxis& File::axis(u32 i) const noexcept { return opened_->axes[i]; }
-const AcdfBin& File::bin(u32 i) const noexcept { return opened_->bins[i]; }
-bool File::has_bins() const noexcept { return opened_->bins != nullptr; }
-const u8* File::tree() const noexcept { return opened_->tree; }
-u32 File::tree_units() const noexcept { return opened_->tree_units; }
-u64 File::size() const noexcept { return opened_->size; }
-const AcdfPartner* File::partner() const noexcept { return opened_->partner; }
-u64 File::table_bytes() const noexcept { return opened_->table_bytes(); }
-u32 File::metadata_count() const noexcept { return opened_->metadata_count; }
-EnvironmentView File::environment() const noexcept { return EnvironmentView(opened_->environment); }
-
-void File::metadata(u32 i, Text& key, Text& value) const noexcept {
-    AcdfText first = {nullptr, 0}, second = {nullptr, 0};
-    acdf_metadata_pair(opened_, i, &first, &second);
-    key = {first.data, first.size};
-    value = {second.data, second.size};
-}
-
-Text File::metadata(const char* key) const noexcept {
-    const AcdfText value = acdf_metadata_value(opened_, key);
-    return {value.data, value.size};
-}
-
-#ifndef ACDF_ENVIRONMENT_ONLY
-int File::memory(AcdfMove* moves) const noexcept { return acdf_memory(opened_, moves); }
-#endif
-
-} // namespace acdf

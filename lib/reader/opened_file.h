@@ -37,11 +37,6 @@ struct AcdfFile {
 
 namespace acdf {
 
-/// File::open and File::from_memory; null on failure. `status` is that of success before.
-AcdfFile* open_path(const char* path, const LoadOptions& options, Status& status) noexcept;
-AcdfFile* open_bytes(const void* data, std::size_t size, const LoadOptions& options, Status& status) noexcept;
-void close_file(AcdfFile* file) noexcept;
-
 #ifndef ACDF_ENVIRONMENT_ONLY
 /// The view of a kind that is not an environment. `tables`: with its runtime tables, where there is memory for
 /// them.

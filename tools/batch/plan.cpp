@@ -38,7 +38,7 @@ AcdfKind file_kind(const BatchJob& job) {
 std::string first_fault(const std::vector<std::uint8_t>& bytes) {
     std::string fault;
     validate(bytes.data(), bytes.size(), [&](const Finding& finding) {
-        if (code_of(finding.number) == ErrorCode::none) return true;
+        if (code_of(finding.number) == ACDF_OK) return true;
         fault = "rule " + std::to_string(finding.number) + ": " + finding.detail;
         return false;
     });

@@ -87,7 +87,7 @@ LoadedFile load_file(const std::string& path) {
     if (status.rule == 2002)
         throw Failure(shown(path) + ": " + what_is_it(loaded.bytes.data(), loaded.bytes.size()));
     std::string text = shown(path) + ": " + status.message;
-    if (status.code == ErrorCode::malformed) text += "; `acdf validate` lists every fault";
+    if (status.code == ACDF_MALFORMED) text += "; `acdf validate` lists every fault";
     throw Failure(text);
 }
 

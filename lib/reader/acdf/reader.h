@@ -20,50 +20,28 @@
 // most 256 times any file (rule 6039).
 #pragma once
 
-#include <acdf/allocator.h>
-#include <acdf/layout.h>
+#include <acdf/file.h>
 
 #include <cstddef>
 #include <cstdint>
-
-struct AcdfFile;
-#ifndef ACDF_ENVIRONMENT_ONLY
-struct AcdfMove;
-#endif
+#include <utility>
 
 namespace acdf {
 
 class EnvironmentView;
-#ifndef ACDF_ENVIRONMENT_ONLY
 class LocalEnvironmentView;
 class BrdfView;
 class TableView;
 class IndexedEnvironment;
-#endif
-
-/// What kind of failure; the numbers are stable.
-enum class ErrorCode : int {
-    none = 0,
-    cannot_open = 1,
-    cannot_read = 2,
-    out_of_memory = 3,
-    limit_exceeded = 4,
-    malformed = 5,   ///< breaks a rule of SPEC.md: see Status::rule
-    unsupported = 6, ///< a newer or unknown version, kind, feature or critical chunk
-};
 
 /// The outcome of loading: a value, never an exception.
-struct Status {
-    ErrorCode code = ErrorCode::none;
-    int rule = 0;             ///< number of the broken rule of SPEC.md, 0 if none
-    std::uint64_t offset = 0; ///< byte in the file where it shows
-    char message[240] = {};   ///< one line, UTF-8: what is wrong and where
-
+struct Status : AcdfError {
+    Status() noexcept : AcdfError() {}
     /// Whether the file was loaded.
-    bool ok() const noexcept { return code == ErrorCode::none; }
+    bool ok() const noexcept { return code == ACDF_OK; }
 };
 
-/// Limits checked before anything is allocated.
+/// Limits checked before anything is allocated; 0 stands for the default.
 struct Limits {
     std::uint64_t max_file_bytes = std::uint64_t{1} << 32;
     std::uint64_t max_inflated_bytes = std::uint64_t{1} << 30; ///< sum over compressed chunks
@@ -85,56 +63,74 @@ struct LoadOptions {
 };
 
 /// A key or value of the metadata: UTF-8, not terminated.
-struct Text {
-    const char* data = nullptr;
-    std::size_t size = 0;
-};
+using Text = AcdfText;
 
 /// A checked file. Movable, not copyable.
 class File {
 public:
     File() noexcept = default;
-    ~File();
-    File(File&& other) noexcept;
-    File& operator=(File&& other) noexcept;
+    ~File() { acdf_close(opened_); }
+    File(File&& other) noexcept : opened_(std::exchange(other.opened_, nullptr)) {}
+    File& operator=(File&& other) noexcept {
+        if (this != &other) acdf_close(std::exchange(opened_, std::exchange(other.opened_, nullptr)));
+        return *this;
+    }
     File(const File&) = delete;
     File& operator=(const File&) = delete;
 
     /// Reads and checks the regular file at `path`. On failure `file` is left empty.
-    static Status open(const char* path, File& file, const LoadOptions& options = {}) noexcept;
+    static Status open(const char* path, File& file, const LoadOptions& options = {}) noexcept {
+        Status status;
+        const AcdfLoadOptions given = of(options);
+        file = File(acdf_open_with(path, &given, &status));
+        return status;
+    }
     /// Checks `size` bytes at `data`. They are used in place, and must outlive `file`, unless they are not
     /// aligned to 8 bytes (then copied). Compressed chunks are inflated into memory of the file's own.
     static Status from_memory(const void* data, std::size_t size, File& file,
-                              const LoadOptions& options = {}) noexcept;
+                              const LoadOptions& options = {}) noexcept {
+        Status status;
+        const AcdfLoadOptions given = of(options);
+        file = File(acdf_from_memory_with(data, size, &given, &status));
+        return status;
+    }
 
     /// Whether no file was loaded: then only this may be asked.
     bool empty() const noexcept { return opened_ == nullptr; }
     // Everything below asks for a file that is not empty.
+    /// The open file, for functions in C and of rooms beside the reader.
+    const AcdfFile* get() const noexcept { return opened_; }
     /// Kind, and the parts of the file as they lie in it; axis i < axis_count. A tree of halvings has no bins.
-    AcdfKind kind() const noexcept;
-    const AcdfHeader& header() const noexcept;
-    const AcdfDescription& description() const noexcept;
-    const AcdfAxis& axis(std::uint32_t i) const noexcept;
-    const AcdfBin& bin(std::uint32_t i) const noexcept;
-    bool has_bins() const noexcept;
+    AcdfKind kind() const noexcept { return acdf_kind(opened_); }
+    const AcdfHeader& header() const noexcept { return *acdf_header(opened_); }
+    const AcdfDescription& description() const noexcept { return *acdf_description(opened_); }
+    const AcdfAxis& axis(std::uint32_t i) const noexcept { return *acdf_axis(opened_, i); }
+    const AcdfBin& bin(std::uint32_t i) const noexcept { return *acdf_bin(opened_, i); }
+    bool has_bins() const noexcept { return acdf_bin(opened_, 0) != nullptr; }
     /// Chunk TREE, and its size in units of two bytes, in which offsets in it are counted.
-    const std::uint8_t* tree() const noexcept;
-    std::uint32_t tree_units() const noexcept;
-    std::uint64_t size() const noexcept;
+    const std::uint8_t* tree() const noexcept { return acdf_tree(opened_, nullptr); }
+    std::uint32_t tree_units() const noexcept {
+        std::uint32_t units = 0;
+        acdf_tree(opened_, &units);
+        return units;
+    }
+    std::uint64_t size() const noexcept { return acdf_size(opened_); }
     /// What the file is to be combined with; null: it is to be used alone.
-    const AcdfPartner* partner() const noexcept;
+    const AcdfPartner* partner() const noexcept { return acdf_partner(opened_); }
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
-    std::uint64_t table_bytes() const noexcept;
+    std::uint64_t table_bytes() const noexcept { return acdf_table_bytes(opened_); }
 
     /// Metadata pairs; `count` is 0 where the file carries none.
-    std::uint32_t metadata_count() const noexcept;
-    void metadata(std::uint32_t i, Text& key, Text& value) const noexcept;
+    std::uint32_t metadata_count() const noexcept { return acdf_metadata_count(opened_); }
+    void metadata(std::uint32_t i, Text& key, Text& value) const noexcept {
+        key = value = {nullptr, 0};
+        acdf_metadata_pair(opened_, i, &key, &value);
+    }
     /// The value of `key`, empty where absent.
-    Text metadata(const char* key) const noexcept;
+    Text metadata(const char* key) const noexcept { return acdf_metadata_value(opened_, key); }
 
     /// The view of an environment file (acdf/environment_view.h): only where kind() == ACDF_KIND_ENVIRONMENT.
     EnvironmentView environment() const noexcept;
-#ifndef ACDF_ENVIRONMENT_ONLY
     // The views of the other kinds are in acdf/views.h.
     /// The view of a local environment file: only where kind() == ACDF_KIND_LOCAL.
     LocalEnvironmentView local() const noexcept;
@@ -146,10 +142,14 @@ public:
     IndexedEnvironment indexed() const noexcept;
     /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
     /// many there are (acdf/moved.h).
-    int memory(AcdfMove* moves) const noexcept;
-#endif
+    int memory(AcdfMove* moves) const noexcept { return acdf_memory(opened_, moves); }
 
 private:
+    explicit File(AcdfFile* opened) noexcept : opened_(opened) {}
+    static AcdfLoadOptions of(const LoadOptions& options) noexcept {
+        return {options.limits.max_file_bytes, options.limits.max_inflated_bytes, !options.tables,
+                options.allocator};
+    }
     AcdfFile* opened_ = nullptr;
 };
 

@@ -15,7 +15,7 @@ namespace acdf {
 
 void Report::pass(const Finding& finding) noexcept {
     if (stopped_) return;
-    ++(code_of(finding.number) == ErrorCode::none ? verdict_.warnings : verdict_.errors);
+    ++(code_of(finding.number) == ACDF_OK ? verdict_.warnings : verdict_.errors);
     if (!sink_(finding, context_)) stopped_ = true;
 }
 

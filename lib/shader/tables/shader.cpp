@@ -15,7 +15,7 @@ namespace {
 
 Status none(const char* why) {
     Status status;
-    status.code = ErrorCode::unsupported;
+    status.code = ACDF_UNSUPPORTED;
     write_message(status.message, sizeof status.message, "no tables for shaders: %s", why);
     return status;
 }

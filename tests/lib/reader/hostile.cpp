@@ -205,7 +205,7 @@ TEST_P(Hostile, laterVersions) {
     spec.chunks.back() = {"NEWS", {1, 2, 3}, 1, false};
     const acdf::Status status = load(spec.encode());
     EXPECT_EQ(status.rule, 3002);
-    EXPECT_EQ(status.code, acdf::ErrorCode::unsupported);
+    EXPECT_EQ(status.code, ACDF_UNSUPPORTED);
     EXPECT_NE(std::strstr(status.message, "NEWS"), nullptr) << status.message;
     set(later, 12, 2, 2); // the major version
     seal(later);

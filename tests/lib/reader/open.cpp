@@ -23,7 +23,6 @@
 #endif
 
 using namespace acdf_test;
-using acdf::ErrorCode;
 using acdf::File;
 using acdf::Status;
 
@@ -88,7 +87,7 @@ TEST_F(Open, messagesAreOneLineOfText) {
 TEST_F(Open, rule1001) {
     File file;
     const Status status = File::open(path("missing.acdf").c_str(), file);
-    EXPECT_EQ(status.code, ErrorCode::cannot_open);
+    EXPECT_EQ(status.code, ACDF_CANNOT_OPEN);
     EXPECT_EQ(status.rule, 1001);
     EXPECT_NE(std::strstr(status.message, "missing.acdf: No such file"), nullptr) << status.message;
     EXPECT_EQ(File::open(nullptr, file).rule, 1001);
@@ -98,7 +97,7 @@ TEST_F(Open, rule1001) {
 TEST_F(Open, rule1002) {
     File file;
     Status status = File::open(folder_.c_str(), file);
-    EXPECT_EQ(status.code, ErrorCode::cannot_read);
+    EXPECT_EQ(status.code, ACDF_CANNOT_READ);
     EXPECT_EQ(status.rule, 1002);
     EXPECT_NE(std::strstr(status.message, "directory"), nullptr) << status.message;
     ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
@@ -118,7 +117,7 @@ TEST_F(Open, rule1003) {
         if (setrlimit(RLIMIT_AS, &limit) != 0) _exit(2);
         File file;
         const Status status = File::open(big.c_str(), file);
-        _exit(status.rule == 1003 && status.code == ErrorCode::out_of_memory && file.empty() ? 0 : 1);
+        _exit(status.rule == 1003 && status.code == ACDF_OUT_OF_MEMORY && file.empty() ? 0 : 1);
     };
     EXPECT_EXIT(open_with_little_memory(), testing::ExitedWithCode(0), "");
 #endif
@@ -129,7 +128,7 @@ TEST_F(Open, rule1004) {
     const std::string big = write("big.acdf", {});
     std::filesystem::resize_file(big, (std::uintmax_t{4} << 30) + 1); // the default limit and a byte; sparse
     const Status status = File::open(big.c_str(), file);
-    EXPECT_EQ(status.code, ErrorCode::limit_exceeded);
+    EXPECT_EQ(status.code, ACDF_LIMIT_EXCEEDED);
     EXPECT_EQ(status.rule, 1004) << status.message;
 }
 

@@ -269,7 +269,7 @@ TEST(ShaderTraversal, NothingServesWhatIsNoNormal) {
 TEST(ShaderTraversal, TiltedCellsAreRefusedWithAReason) {
     std::ifstream in(ACDF_TEST_DIR "/golden/v1.0/tilted.acdf", std::ios::binary);
     const WalkedFile file({std::istreambuf_iterator<char>(in), {}});
-    EXPECT_EQ(file.status.code, acdf::ErrorCode::unsupported);
+    EXPECT_EQ(file.status.code, ACDF_UNSUPPORTED);
     EXPECT_NE(std::string(file.status.message).find("--fit pdf"), std::string::npos) << file.status.message;
 }
 

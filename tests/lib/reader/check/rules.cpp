@@ -121,8 +121,7 @@ TEST(Rules, areSortedAndNamedOnce) {
         }
         const bool same_id_elsewhere = !ids.insert(rule.id).second;
         EXPECT_FALSE(same_id_elsewhere) << rule.number << ' ' << rule.id;
-        EXPECT_EQ(rule.severity == acdf::Severity::warning, acdf::code_of(rule.number) == acdf::ErrorCode::none)
-            << rule.number;
+        EXPECT_EQ(rule.severity == acdf::Severity::warning, acdf::code_of(rule.number) == ACDF_OK) << rule.number;
     }
     EXPECT_EQ(acdf::find_rule(2002), &acdf::rules[5]);
     EXPECT_EQ(acdf::find_rule(9999), nullptr);

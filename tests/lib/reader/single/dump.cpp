@@ -111,10 +111,9 @@ void repair(Bytes& bytes) {
 using File = std::unique_ptr<AcdfFile, decltype(&acdf_close)>;
 
 File open(const Bytes& bytes, bool plain, AcdfError& error) {
-    error = {};
-    return {plain ? acdf_from_memory_plain(bytes.data(), bytes.size(), &error)
-                  : acdf_from_memory(bytes.data(), bytes.size(), &error),
-            acdf_close};
+    AcdfLoadOptions options = {};
+    options.plain = plain;
+    return {acdf_from_memory_with(bytes.data(), bytes.size(), &options, &error), acdf_close};
 }
 
 void sample(const AcdfEnvironment& sky, Random random, int count, Digest& digest) {
