@@ -5,7 +5,7 @@ class FileError(ValueError):
     """The bytes are no file that this version reads.
 
     `rule` is the number of the rule of format/SPEC.md that is broken (0: none), `offset` the byte where it shows, `code`
-    that of `acdf::ErrorCode`: 4 a limit is exceeded, 5 malformed, 6 unsupported.
+    that of `AcdfErrorCode`: 4 a limit is exceeded, 5 malformed, 6 unsupported.
     """
 
     def __init__(self, message: str, code: int = 0, rule: int = 0, offset: int = 0):
