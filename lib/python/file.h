@@ -4,9 +4,7 @@
 #include "python/arrays.h"
 
 #include <acdf/acdf.h>
-#if ACDF_BATCH
-#include <acdf/batch/batch_c.h>
-#endif
+#include <acdf/arrays/arrays.h>
 
 #include <atomic>
 #include <memory>

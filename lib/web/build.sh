@@ -23,11 +23,11 @@ if ! echo '#include <utility>
 fi
 rm -f "$work"/objects/*.o
 
-# The reader and the tables for shaders, but for the symbols for other languages.
+# The reader and the tables for shaders.
 for source in "$here"/*.cpp "$root"/lib/reader/{,check/,tables/}*.cpp "$root"/lib/shader/tables/*.cpp; do
     name=${source#"$root/lib/"}
     case $name in
-    */linked.cpp | *_windows.cpp) continue ;;
+    *_windows.cpp) continue ;;
     esac
     "$clang" "${flags[@]}" -std=c++17 -fno-exceptions -fno-rtti -isystem "$libcxx" -isystem /usr/include/wasm32-wasi \
         "${includes[@]}" -c "$source" -o "$work/objects/${name//[\/]/_}.o"
