@@ -77,6 +77,13 @@ void raise(const AcdfError& error) {
     throw py::error_already_set();
 }
 
+std::unique_ptr<OpenFile> OpenFile::opened(AcdfFile* file, py::object keeps) {
+    std::unique_ptr<OpenFile> out(new OpenFile(file, std::move(keeps)));
+    AcdfError error;
+    if (acdf_kind(file) == ACDF_KIND_INDEXED && !acdf_indexed(file, &out->maps_, &error)) raise(error);
+    return out;
+}
+
 std::unique_ptr<OpenFile> OpenFile::from_path(const std::string& path, bool tables) {
     AcdfError error;
     const AcdfLoadOptions options = load_options(tables);
@@ -86,7 +93,7 @@ std::unique_ptr<OpenFile> OpenFile::from_path(const std::string& path, bool tabl
         file = acdf_open_with(path.c_str(), &options, &error);
     }
     if (!file) raise(error);
-    return std::unique_ptr<OpenFile>(new OpenFile(file, py::none()));
+    return opened(file, py::none());
 }
 
 std::unique_ptr<OpenFile> OpenFile::from_bytes(const py::bytes& bytes, bool tables) {
@@ -100,7 +107,7 @@ std::unique_ptr<OpenFile> OpenFile::from_bytes(const py::bytes& bytes, bool tabl
         file = acdf_from_memory_with(data, size, &options, &error);
     }
     if (!file) raise(error);
-    return std::unique_ptr<OpenFile>(new OpenFile(file, bytes));
+    return opened(file, bytes);
 }
 
 py::tuple OpenFile::sample(const py::object& condition, const py::object& given, const py::tuple& out) const {

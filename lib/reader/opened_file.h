@@ -24,7 +24,6 @@ struct AcdfFile {
     AcdfLocal local;
     AcdfBrdf brdf;
     AcdfTable table;
-    AcdfIndexed indexed;
     const AcdfNormalRows* rows; ///< of normals or views; null: none
 #endif
     AcdfAllocator allocator; ///< which gave what follows
@@ -41,6 +40,8 @@ namespace acdf {
 AcdfFile* open_path(const char* path, const LoadOptions& options, Status& status) noexcept;
 AcdfFile* open_bytes(const void* data, std::size_t size, const LoadOptions& options, Status& status) noexcept;
 void close_file(AcdfFile* file) noexcept;
+/// A FindingSink: `status`, a Status, becomes that of the first error.
+bool first_error(const Finding& finding, void* status);
 
 #ifndef ACDF_ENVIRONMENT_ONLY
 /// The view of a kind that is not an environment. `tables`: with its runtime tables, where there is memory for

@@ -1,6 +1,7 @@
 /* The C interface of the reader: open a file here, then sample and evaluate with the inline functions of
- * acdf/sample.h, local.h, brdf.h, table.h and indexed.h. Languages without a C compiler can call those of
- * acdf/arrays/arrays.h, of a library beside this one.
+ * acdf/sample.h, local.h, brdf.h and table.h. Languages without a C compiler can call those of
+ * acdf/arrays/arrays.h, of a library beside this one. Another one, acdf/indexed/open.h, makes views of environments
+ * of several maps.
  *
  *   AcdfError error;
  *   AcdfFile* file = acdf_open("probe.acdf", &error);
@@ -13,7 +14,7 @@
  * The safety contract is that of acdf/reader.h: any bytes may be passed in; a file that was accepted can be
  * sampled for ever without reading outside it. An open file is never changed: any number of threads may use
  * it at once. Functions take only open files, not null, but for acdf_close and acdf_environment, acdf_local,
- * acdf_brdf, acdf_table and acdf_indexed, which return 0. */
+ * acdf_brdf and acdf_table, which return 0. */
 #ifndef ACDF_ACDF_H
 #define ACDF_ACDF_H
 
@@ -22,7 +23,6 @@
 #include <acdf/sample.h>
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include <acdf/brdf.h>
-#include <acdf/indexed.h>
 #include <acdf/local.h>
 #include <acdf/moved.h>
 #include <acdf/table.h>
@@ -90,8 +90,6 @@ int acdf_local(const AcdfFile* file, AcdfLocal* out);
 int acdf_brdf(const AcdfFile* file, AcdfBrdf* out);
 /* The same for a table file, to be used with acdf/table.h. */
 int acdf_table(const AcdfFile* file, AcdfTable* out);
-/* The same for an environment of several maps, to be used with acdf/indexed.h. */
-int acdf_indexed(const AcdfFile* file, AcdfIndexed* out);
 
 /* The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how many
  * there are (acdf/moved.h). */

@@ -38,7 +38,6 @@ class EnvironmentView;
 class LocalEnvironmentView;
 class BrdfView;
 class TableView;
-class IndexedEnvironment;
 #endif
 
 /// What kind of failure; the numbers are stable.
@@ -110,6 +109,8 @@ public:
     /// Whether no file was loaded: then only this may be asked.
     bool empty() const noexcept { return opened_ == nullptr; }
     // Everything below asks for a file that is not empty.
+    /// The open file, for functions in C and of rooms beside the reader.
+    const AcdfFile* get() const noexcept { return opened_; }
     /// Kind, and the parts of the file as they lie in it; axis i < axis_count. A tree of halvings has no bins.
     AcdfKind kind() const noexcept;
     const AcdfHeader& header() const noexcept;
@@ -142,8 +143,6 @@ public:
     BrdfView brdf() const noexcept;
     /// The view of a table file: only where kind() == ACDF_KIND_TABLE.
     TableView table() const noexcept;
-    /// The view of an environment of several maps: only where kind() == ACDF_KIND_INDEXED.
-    IndexedEnvironment indexed() const noexcept;
     /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
     /// many there are (acdf/moved.h).
     int memory(AcdfMove* moves) const noexcept;

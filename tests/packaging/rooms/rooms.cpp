@@ -5,6 +5,7 @@
 #include <acdf/batch/batch.h>
 #define BATCH 1
 #endif
+#include <acdf/indexed/views.h>
 #include <acdf/product/product.h>
 #include <acdf/reader.h>
 #include <acdf/shader/tables.h>
@@ -49,6 +50,8 @@ int main(int argc, char** argv) {
     const acdf::ProductSample s = sampler.sample(point, 0.9, 0.4);
     if (!(s.pdf > 0.0f) || sampler.pdf(point, s.direction) != s.pdf) return 1;
     if (!samples_in_arrays(argv[1], light)) return 1;
+    acdf::IndexedEnvironment maps;
+    if (acdf::IndexedEnvironment::open(file, maps).ok() || !maps.empty()) return 1; // it has none
     acdf::ShaderTables tables;
     if (!acdf::ShaderTables::make(file, tables).ok()) return 1;
 #ifdef BATCH
