@@ -1,5 +1,6 @@
 #include "golden_samples.h"
 
+#include <acdf/indexed/views.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -88,7 +89,10 @@ std::string brdf_samples(const acdf::BrdfView& view) {
 constexpr float kCoordinates[][3] = {{6, 1, 0},       {7.5f, 1.75f, 0}, {-0.25f, 2, 0},
                                      {0.5f, 0.5f, 0}, {15, 1.125f, 0},  {30, 1.25f, 0}};
 
-std::string indexed_samples(const acdf::IndexedEnvironment& view) {
+std::string indexed_samples(const std::string& name, const acdf::File& file) {
+    acdf::IndexedEnvironment view;
+    if (const acdf::Status status = acdf::IndexedEnvironment::open(file, view); !status.ok())
+        throw std::runtime_error(name + ": " + status.message);
     std::string text;
     for (const auto& t : kCoordinates)
         for (const auto& [u0, u1] : random_numbers()) {
@@ -109,7 +113,7 @@ std::string golden_samples(const std::string& name, const std::vector<std::uint8
     if (file.kind() == ACDF_KIND_LOCAL && file.local().has_visibility()) return visibility_samples(file.local());
     if (file.kind() == ACDF_KIND_LOCAL) return local_samples(file.local());
     if (file.kind() == ACDF_KIND_BRDF) return brdf_samples(file.brdf());
-    if (file.kind() == ACDF_KIND_INDEXED) return indexed_samples(file.indexed());
+    if (file.kind() == ACDF_KIND_INDEXED) return indexed_samples(name, file);
     std::string text;
     for (const auto& [u0, u1] : random_numbers()) {
         const acdf::DirectionSample s = file.environment().sample(u0, u1);

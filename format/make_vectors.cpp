@@ -5,6 +5,7 @@
 #include "compress/store/store.h"
 #include "write_file.h"
 
+#include <acdf/indexed/views.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -158,7 +159,10 @@ std::string visibility_rows(const acdf::LocalEnvironmentView& view) {
 }
 
 /// Of several maps: coordinates at a map, between, beyond, and not a number.
-std::string indexed_rows(const acdf::IndexedEnvironment& view) {
+std::string indexed_rows(const acdf::File& file) {
+    acdf::IndexedEnvironment view;
+    if (const acdf::Status status = acdf::IndexedEnvironment::open(file, view); !status.ok())
+        throw std::runtime_error(status.message);
     const AcdfIndexed& data = view.data();
     std::string text = "call,";
     for (std::uint32_t axis = 0; axis < data.axes; ++axis) text += "t" + std::to_string(axis) + ",";
@@ -295,7 +299,7 @@ std::string rows_of(const acdf::File& file) {
     case ACDF_KIND_TABLE:
         return table_rows(file.table());
     case ACDF_KIND_INDEXED:
-        return indexed_rows(file.indexed());
+        return indexed_rows(file);
     default:
         return environment_rows(file.environment());
     }

@@ -15,8 +15,8 @@ strict=false
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 work=$PWD/build/portability
 mkdir -p "$work"
-reader=$(find lib/reader lib/product lib/shader/tables -name '*.cpp' | sort)
-flags="-O1 -std=c++17 -fno-exceptions -fno-rtti -ffp-contract=off -Wall -Wextra -Werror -Iformat -Ilib/reader -Ilib/product -Ilib/shader -Ilib"
+reader=$(find lib/reader lib/arrays lib/indexed lib/product lib/shader/tables -name '*.cpp' | sort)
+flags="-O1 -std=c++17 -fno-exceptions -fno-rtti -ffp-contract=off -Wall -Wextra -Werror -Iformat -Ilib/reader -Ilib/arrays -Ilib/indexed -Ilib/product -Ilib/shader -Ilib"
 left_out=0
 
 missing() { # TOOL WHAT

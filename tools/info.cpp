@@ -42,29 +42,11 @@ const AcdfNormalRows* rows_of(const File& file) {
     return file.kind() == ACDF_KIND_LOCAL ? file.local().data().rows_of_normals : nullptr;
 }
 
-/// All that are halved: splits of all maps, and what maps share below.
-std::uint64_t halving_count(const File& file) {
-    const AcdfIndexed data = file.indexed().data();
-    std::uint64_t halvings = 0;
-    const auto* tiles = ACDF_TOP_ARRAY(AcdfTopTile, data.top, data.top->tiles);
-    const auto* nodes = ACDF_TOP_ARRAY(AcdfHalving, data.top, data.top->nodes);
-    for (std::uint32_t tile = 0; tile <= data.top->splits; ++tile) {
-        std::vector<std::uint32_t> open;
-        if (tiles[tile].node != ACDF_LEAF) open.push_back(tiles[tile].node);
-        for (; !open.empty(); ++halvings) {
-            const std::uint32_t at = open.back(), link = nodes[at].link;
-            open.pop_back();
-            if (!(link >> 3 & 1u)) open.push_back(at + 1);
-            if (!(link >> 4 & 1u)) open.push_back(at + (link >> 5));
-        }
-    }
-    return halvings + data.top->splits;
-}
-
-TreeCounts count_tree(const File& file) {
+TreeCounts count_tree(const LoadedFile& loaded) {
+    const File& file = loaded.file;
     TreeCounts counts;
     if (file.kind() == ACDF_KIND_INDEXED) {
-        counts.cells = halving_count(file) + 1;
+        counts.cells = loaded.maps.data().halved->count + std::uint64_t{1};
         return counts;
     }
     if (file.kind() == ACDF_KIND_TABLE) {
@@ -190,8 +172,8 @@ Json local_json(const File& file) {
 }
 
 /// What the maps of an indexed environment have.
-Json maps_json(const File& file) {
-    const AcdfIndexed data = file.indexed().data();
+Json maps_json(const LoadedFile& loaded) {
+    const AcdfIndexed& data = loaded.maps.data();
     std::uint64_t suns = 0;
     for (std::uint32_t i = 0; i < data.top->maps; ++i) suns += data.maps[i].sun_share > 0.0f;
     Json report;
@@ -201,7 +183,7 @@ Json maps_json(const File& file) {
     Json axes = Json::object();
     const double* at = data.coordinates;
     for (std::uint32_t axis = 0; axis < data.axes; at += data.counts[axis++])
-        axes[axis_name(file.axis(2 + axis))] = std::vector<double>(at, at + data.counts[axis]);
+        axes[axis_name(loaded.file.axis(2 + axis))] = std::vector<double>(at, at + data.counts[axis]);
     report["coordinates"] = axes;
     return report;
 }
@@ -225,22 +207,23 @@ Json partner_json(const File& file) {
     return report;
 }
 
-Json describe(const std::string& path, const File& file) {
+Json describe(const std::string& path, const LoadedFile& loaded) {
+    const File& file = loaded.file;
     const AcdfHeader& header = file.header();
     const AcdfDescription& description = file.description();
-    const TreeCounts counts = count_tree(file);
+    const TreeCounts counts = count_tree(loaded);
     Json report;
     report["file"] = path;
     report["kind"] = build::kind_name(header.kind);
     report["version"] = std::to_string(header.version_major) + "." + std::to_string(header.version_minor);
     report["bytes"] = file.size();
-    report["table_bytes"] = file.table_bytes();
-    report["memory_bytes"] = measure::memory_of(file);
+    report["table_bytes"] = file.table_bytes() + loaded.maps.table_bytes();
+    report["memory_bytes"] = measure::memory_of(file) + loaded.maps.table_bytes();
     report["bins"] = description.bin_count;
     report["cells"] = counts.cells;
     report["curves"] = counts.curves;
     if (header.kind == ACDF_KIND_LOCAL) report["local"] = local_json(file);
-    if (header.kind == ACDF_KIND_INDEXED) report["maps"] = maps_json(file);
+    if (header.kind == ACDF_KIND_INDEXED) report["maps"] = maps_json(loaded);
     if (file.partner()) report["partner"] = partner_json(file);
     report["axes"] = axes_json(file);
     report["fit"] = build::fit_name(description.fit);
@@ -374,7 +357,7 @@ int run(const InfoArguments& options) {
     for (const std::string& path : options.files) {
         try {
             const LoadedFile loaded = load_file(path);
-            reports.push_back(describe(path, loaded.file));
+            reports.push_back(describe(path, loaded));
             if (options.json) continue;
             if (reports.size() > 1) std::printf("\n");
             print(reports.back());

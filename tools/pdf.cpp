@@ -87,8 +87,8 @@ void evaluate_environment(const File& file, std::istream& in, const PdfArguments
     });
 }
 
-void evaluate_indexed(const File& file, std::istream& in, const PdfArguments& options, Output& output) {
-    const MixedEnvironment view = chosen_environment(options.file, file, options.at);
+void evaluate_indexed(const LoadedFile& loaded, std::istream& in, const PdfArguments& options, Output& output) {
+    const MixedEnvironment view = chosen_environment(options.file, loaded, options.at);
     if (options.csv) output.write("x,y,z,pdf\n");
     evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
         return pdf_line(direction, options, [&](const float d[3]) { return view.pdf(d); });
@@ -158,7 +158,7 @@ void run(const PdfArguments& options) {
     if (kind == ACDF_KIND_ENVIRONMENT) evaluate_environment(loaded.file, in, options, output);
     else if (kind == ACDF_KIND_LOCAL) evaluate_local(loaded.file, in, options, output);
     else if (kind == ACDF_KIND_BRDF) evaluate_brdf(loaded.file, in, options, output);
-    else if (kind == ACDF_KIND_INDEXED) evaluate_indexed(loaded.file, in, options, output);
+    else if (kind == ACDF_KIND_INDEXED) evaluate_indexed(loaded, in, options, output);
     else if (kind == ACDF_KIND_TABLE) evaluate_table(loaded.file, in, options, output);
     output.commit();
 }

@@ -82,8 +82,8 @@ void sample_environment(const File& file, const SampleArguments& options, Output
     });
 }
 
-void sample_indexed(const File& file, const SampleArguments& options, Output& output) {
-    const MixedEnvironment view = chosen_environment(options.file, file, options.at);
+void sample_indexed(const LoadedFile& loaded, const SampleArguments& options, Output& output) {
+    const MixedEnvironment view = chosen_environment(options.file, loaded, options.at);
     write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
         for (std::size_t i = 0; i < count; ++i) samples[i] = view.sample(u[i][0], u[i][1]);
     });
@@ -146,7 +146,7 @@ void run(const SampleArguments& options) {
     if (kind == ACDF_KIND_ENVIRONMENT) sample_environment(loaded.file, options, output);
     else if (kind == ACDF_KIND_LOCAL) sample_local(loaded.file, options, output);
     else if (kind == ACDF_KIND_BRDF) sample_brdf(loaded.file, options, output);
-    else if (kind == ACDF_KIND_INDEXED) sample_indexed(loaded.file, options, output);
+    else if (kind == ACDF_KIND_INDEXED) sample_indexed(loaded, options, output);
     else if (kind == ACDF_KIND_TABLE) sample_table(loaded.file, options, output);
     output.commit();
 }

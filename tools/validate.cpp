@@ -4,9 +4,9 @@
 #include "tools/cli/json.h"
 #include "tools/cli/messages.h"
 #include "tools/cli/options.h"
+#include "tools/cli/validation.h"
 #include "tools/commands.h"
 
-#include "reader/check/check.h"
 #include "rules/rules.h"
 #include "rules/signatures.h"
 
@@ -43,10 +43,11 @@ const char* severity_name(Severity severity) { return severity == Severity::erro
 Report validate_file(const std::string& path) {
     Report report{path, {}, {}};
     const std::vector<std::uint8_t> bytes = read_acdf_bytes(path);
-    report.verdict = validate(bytes.data(), bytes.size(), [&](const Finding& finding) {
+    report.verdict = validate_all(bytes, [&](const Finding& finding) {
         const bool foreign = finding.number == 2002;
         report.faults.push_back({find_rule(finding.number), finding.offset,
                                  foreign ? what_is_it(bytes.data(), bytes.size()) : finding.detail});
+        return true;
     });
     return report;
 }

@@ -82,8 +82,9 @@ py::dict description_of(const OpenFile& open) {
     out["kind"] = build::kind_name(header->kind);
     out["version"] = std::to_string(header->version_major) + "." + std::to_string(header->version_minor);
     out["bytes"] = acdf_size(file);
-    out["table_bytes"] = acdf_table_bytes(file);
-    out["memory_bytes"] = memory_of(file);
+    const std::uint64_t of_maps = open.maps().tables.bytes;
+    out["table_bytes"] = acdf_table_bytes(file) + of_maps;
+    out["memory_bytes"] = memory_of(file) + of_maps;
     out["bins"] = description->bin_count;
     out["partner"] = partner_of(file);
     out["axes"] = axes_of(file);

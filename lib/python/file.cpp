@@ -63,23 +63,6 @@ Indices indices(const AcdfFile* file, const py::object& condition, const std::ve
     return out;
 }
 
-// What samples and evaluates arrays: batches, where they are built.
-#if ACDF_BATCH
-constexpr auto sample_environment = acdf_sample_environment_batch;
-constexpr auto pdf_environment = acdf_pdf_environment_batch;
-constexpr auto sample_local = acdf_sample_local_batch;
-constexpr auto pdf_local = acdf_pdf_local_batch;
-constexpr auto sample_brdf = acdf_sample_brdf_batch;
-constexpr auto pdf_brdf = acdf_pdf_brdf_batch;
-#else
-constexpr auto sample_environment = acdf_sample_environment_array;
-constexpr auto pdf_environment = acdf_pdf_environment_array;
-constexpr auto sample_local = acdf_sample_local_array;
-constexpr auto pdf_local = acdf_pdf_local_array;
-constexpr auto sample_brdf = acdf_sample_brdf_array;
-constexpr auto pdf_brdf = acdf_pdf_brdf_array;
-#endif
-
 } // namespace
 
 void raise(const AcdfError& error) {
@@ -94,6 +77,13 @@ void raise(const AcdfError& error) {
     throw py::error_already_set();
 }
 
+std::unique_ptr<OpenFile> OpenFile::opened(AcdfFile* file, py::object keeps) {
+    std::unique_ptr<OpenFile> out(new OpenFile(file, std::move(keeps)));
+    AcdfError error;
+    if (acdf_kind(file) == ACDF_KIND_INDEXED && !acdf_indexed(file, &out->maps_, &error)) raise(error);
+    return out;
+}
+
 std::unique_ptr<OpenFile> OpenFile::from_path(const std::string& path, bool tables) {
     AcdfError error;
     const AcdfLoadOptions options = load_options(tables);
@@ -103,7 +93,7 @@ std::unique_ptr<OpenFile> OpenFile::from_path(const std::string& path, bool tabl
         file = acdf_open_with(path.c_str(), &options, &error);
     }
     if (!file) raise(error);
-    return std::unique_ptr<OpenFile>(new OpenFile(file, py::none()));
+    return opened(file, py::none());
 }
 
 std::unique_ptr<OpenFile> OpenFile::from_bytes(const py::bytes& bytes, bool tables) {
@@ -117,7 +107,7 @@ std::unique_ptr<OpenFile> OpenFile::from_bytes(const py::bytes& bytes, bool tabl
         file = acdf_from_memory_with(data, size, &options, &error);
     }
     if (!file) raise(error);
-    return std::unique_ptr<OpenFile>(new OpenFile(file, bytes));
+    return opened(file, bytes);
 }
 
 py::tuple OpenFile::sample(const py::object& condition, const py::object& given, const py::tuple& out) const {
@@ -132,9 +122,9 @@ py::tuple OpenFile::sample(const py::object& condition, const py::object& given,
     const float* from = at.rows.data();
     {
         const py::gil_scoped_release release;
-        if (kind == ACDF_KIND_BRDF) sample_brdf(file(), from, at.each, numbers, u.count, w, p);
-        else if (kind == ACDF_KIND_LOCAL) sample_local(file(), from, at.each, numbers, u.count, w, p);
-        else sample_environment(file(), numbers, u.count, w, p);
+        if (kind == ACDF_KIND_BRDF) acdf_sample_brdf_array(file(), from, at.each, numbers, u.count, w, p);
+        else if (kind == ACDF_KIND_LOCAL) acdf_sample_local_array(file(), from, at.each, numbers, u.count, w, p);
+        else acdf_sample_environment_array(file(), numbers, u.count, w, p);
     }
     return py::make_tuple(directions, pdfs);
 }
@@ -177,9 +167,9 @@ py::array OpenFile::pdf(const py::object& condition, const py::object& given, co
     const float *directions = w.data(), *from = at.rows.data();
     {
         const py::gil_scoped_release release;
-        if (kind == ACDF_KIND_BRDF) pdf_brdf(file(), from, at.each, directions, w.count, p);
-        else if (kind == ACDF_KIND_LOCAL) pdf_local(file(), from, at.each, directions, w.count, p);
-        else pdf_environment(file(), directions, w.count, p);
+        if (kind == ACDF_KIND_BRDF) acdf_pdf_brdf_array(file(), from, at.each, directions, w.count, p);
+        else if (kind == ACDF_KIND_LOCAL) acdf_pdf_local_array(file(), from, at.each, directions, w.count, p);
+        else acdf_pdf_environment_array(file(), directions, w.count, p);
     }
     return std::move(pdfs);
 }

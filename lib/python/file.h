@@ -4,9 +4,8 @@
 #include "python/arrays.h"
 
 #include <acdf/acdf.h>
-#if ACDF_BATCH
-#include <acdf/batch/batch_c.h>
-#endif
+#include <acdf/arrays/arrays.h>
+#include <acdf/indexed/open.h>
 
 #include <atomic>
 #include <memory>
@@ -21,7 +20,13 @@ public:
     /// Uses the bytes in condition: they cannot change.
     static std::unique_ptr<OpenFile> from_bytes(const py::bytes& bytes, bool tables);
 
+    ~OpenFile() { acdf_indexed_close(&maps_); }
+    OpenFile(const OpenFile&) = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
+
     const AcdfFile* file() const { return file_.get(); }
+    /// Of a file of several maps; zero of others.
+    const AcdfIndexed& maps() const { return maps_; }
     /// Directions (or points) and their pdfs. `condition`: normals, views, indices; None for environments.
     /// `out`: where they are written, or None for new arrays.
     py::tuple sample(const py::object& condition, const py::object& u, const py::tuple& out) const;
@@ -36,10 +41,13 @@ private:
     };
 
     explicit OpenFile(AcdfFile* file, py::object keeps) : keeps_(std::move(keeps)), file_(file) {}
+    /// With its maps, if it has some.
+    static std::unique_ptr<OpenFile> opened(AcdfFile* file, py::object keeps);
     py::tuple sample_table(const py::object& condition, const py::object& u, const py::tuple& out) const;
 
     py::object keeps_;
     std::unique_ptr<AcdfFile, Close> file_;
+    AcdfIndexed maps_ = {};
 };
 
 /// Adds OpenFile to the module.

@@ -3,7 +3,7 @@
 
 #include <pybind11/stl.h>
 
-#include <acdf/indexed.h>
+#include <acdf/indexed/indexed.h>
 
 #include <algorithm>
 #include <limits>
@@ -63,8 +63,8 @@ struct Mixed {
 };
 
 std::unique_ptr<Mixed> mixed_at(const py::object& file, const std::vector<double>& coordinates) {
-    AcdfIndexed indexed;
-    if (!acdf_indexed(file.cast<const OpenFile&>().file(), &indexed) || coordinates.size() != indexed.axes)
+    const AcdfIndexed& indexed = file.cast<const OpenFile&>().maps();
+    if (indexed.axes == 0 || coordinates.size() != indexed.axes)
         throw py::value_error("a coordinate is needed for each axis of maps");
     auto out = std::make_unique<Mixed>();
     out->keeps = file;

@@ -28,10 +28,6 @@ int acdf_table(const AcdfFile* file, AcdfTable* out) {
     return of_kind(file, ACDF_KIND_TABLE, &AcdfFile::table, out);
 }
 
-int acdf_indexed(const AcdfFile* file, AcdfIndexed* out) {
-    return of_kind(file, ACDF_KIND_INDEXED, &AcdfFile::indexed, out);
-}
-
 int acdf_memory(const AcdfFile* file, AcdfMove* moves) {
     int count = 0;
     moves[count++] = {file->bytes, static_cast<size_t>(file->size), nullptr};

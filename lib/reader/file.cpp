@@ -7,7 +7,6 @@
 #include "message.h"
 #include "opened_file.h"
 #ifndef ACDF_ENVIRONMENT_ONLY
-#include "tables/indexed.h"
 #include "tables/normals.h"
 #endif
 
@@ -71,6 +70,8 @@ void name_file(AcdfError& status, const char* path) {
     std::memcpy(status.message, whole, sizeof whole);
 }
 
+} // namespace
+
 bool first_error(const Finding& finding, void* status) {
     if (code_of(finding.number) == ACDF_OK) return true;
 #ifdef ACDF_ENVIRONMENT_ONLY
@@ -80,6 +81,8 @@ bool first_error(const Finding& finding, void* status) {
 #endif
     return false;
 }
+
+namespace {
 
 // What follows is false, and `status` says why, where it fails.
 
@@ -154,18 +157,14 @@ bool load(const LoadOptions& options, AcdfFile& file, AcdfError& status) noexcep
     if (status.code != ACDF_OK) return false;
     take_parts(parts, file);
 #ifndef ACDF_ENVIRONMENT_ONLY
-    if (file.kind() == ACDF_KIND_INDEXED) {
-        file.indexed = make_indexed(parts, options.tables, options.allocator, file.memory[2]);
-        if (!file.indexed.top) return fail(status, 1003, "no memory for %llu halvings", ull{parts.halving_count});
-        return true;
-    }
     if (file.kind() == ACDF_KIND_TABLE) {
         make_view(parts, options.tables, file);
         if (!file.memory[2].data) file.memory[2] = std::exchange(parts.halvings_block, {}); // the nodes alone
         return true;
     }
 #endif
-    if (parts.halvings && !make_halved(parts, options.tables, file))
+    const bool lookup = options.tables && file.kind() != ACDF_KIND_INDEXED; // whose maps have one of their own
+    if (parts.halvings && !make_halved(parts, lookup, file))
         return fail(status, 1003, "no memory for %llu halvings", ull{parts.halving_count});
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (parts.normals && !make_rows(parts, options.tables, file))

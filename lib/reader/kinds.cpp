@@ -1,7 +1,6 @@
 // The views of local environments, BRDFs and tables.
 #include "check/check.h"
 #include "opened_file.h"
-#include "tables/indexed.h"
 #include "tables/table_lookup.h"
 
 #include <acdf/views.h>
@@ -72,6 +71,5 @@ void make_view(const Parts& parts, bool tables, AcdfFile& file) noexcept {
 LocalEnvironmentView File::local() const noexcept { return LocalEnvironmentView(opened_->local); }
 BrdfView File::brdf() const noexcept { return BrdfView(opened_->brdf); }
 TableView File::table() const noexcept { return TableView(opened_->table); }
-IndexedEnvironment File::indexed() const noexcept { return IndexedEnvironment(opened_->indexed); }
 
 } // namespace acdf

@@ -24,7 +24,6 @@ struct AcdfFile {
     AcdfLocal local;
     AcdfBrdf brdf;
     AcdfTable table;
-    AcdfIndexed indexed;
     const AcdfNormalRows* rows; ///< of normals or views; null: none
 #endif
     AcdfAllocator allocator; ///< which gave what follows
@@ -36,6 +35,9 @@ struct AcdfFile {
 };
 
 namespace acdf {
+
+/// A FindingSink: `status`, an AcdfError, becomes that of the first error.
+bool first_error(const Finding& finding, void* status);
 
 #ifndef ACDF_ENVIRONMENT_ONLY
 /// The view of a kind that is not an environment. `tables`: with its runtime tables, where there is memory for

@@ -13,7 +13,7 @@ mkdir -p "$work/objects" "$work/package"
 # Small before fast, as a page loads it, with the copies that engines have: functions that processors are to take in stay functions.
 flags=(--target=wasm32-wasi -Oz -flto -mbulk-memory -ffp-contract=off -fvisibility=hidden -DNDEBUG -Wall -Wextra)
 for name in ACDF_INLINE ACDF_OUTLINE ACDF_OUTLINE_ON_CPU ACDF_CALLED; do flags+=("-D$name=static inline"); done
-includes=(-I"$root/format" -I"$root/lib/reader" -I"$root/lib/shader" -I"$root/lib" -I"$here/zlib")
+includes=(-I"$root/format" -I"$root/lib/reader" -I"$root/lib/indexed" -I"$root/lib/shader" -I"$root/lib" -I"$here/zlib")
 libcxx=$(echo "$("$clang" -print-resource-dir)"/../../../include/wasm32-wasi/c++/v1)
 if ! echo '#include <utility>
 #include <cstdlib>' | "$clang" --target=wasm32-wasi -isystem "$libcxx" -isystem /usr/include/wasm32-wasi -x c++ -c - \
@@ -23,11 +23,11 @@ if ! echo '#include <utility>
 fi
 rm -f "$work"/objects/*.o
 
-# The reader and the tables for shaders, but for the symbols for other languages.
-for source in "$here"/*.cpp "$root"/lib/reader/{,check/,tables/}*.cpp "$root"/lib/shader/tables/*.cpp; do
+# The reader, environments of several maps and the tables for shaders.
+for source in "$here"/*.cpp "$root"/lib/reader/{,check/,tables/}*.cpp "$root"/lib/indexed/*.cpp "$root"/lib/shader/tables/*.cpp; do
     name=${source#"$root/lib/"}
     case $name in
-    */linked.cpp | *_windows.cpp) continue ;;
+    *_windows.cpp) continue ;;
     esac
     "$clang" "${flags[@]}" -std=c++17 -fno-exceptions -fno-rtti -isystem "$libcxx" -isystem /usr/include/wasm32-wasi \
         "${includes[@]}" -c "$source" -o "$work/objects/${name//[\/]/_}.o"

@@ -22,11 +22,6 @@ inline acdf::BrdfView moved(const acdf::BrdfView& view, const AcdfMove* moves, i
     acdf_move_brdf(&data, moves, count);
     return acdf::BrdfView(data);
 }
-inline acdf::IndexedEnvironment moved(const acdf::IndexedEnvironment& view, const AcdfMove* moves, int count) {
-    AcdfIndexed data = view.data();
-    acdf_move_indexed(&data, moves, count);
-    return acdf::IndexedEnvironment(data);
-}
 inline acdf::TableView moved(const acdf::TableView& view, const AcdfMove* moves, int count) {
     AcdfTable data = view.data();
     acdf_move_table(&data, moves, count);

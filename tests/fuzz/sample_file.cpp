@@ -6,7 +6,10 @@
 #endif
 #include "tests/fuzz/sample_product.h"
 
+#include "indexed/check.h"
+
 #include <acdf/acdf.h>
+#include <acdf/indexed/views.h>
 #include <acdf/shader/tables.h>
 
 #include <cmath>
@@ -144,10 +147,14 @@ void sample_in_c(const void* bytes, std::size_t size, const acdf::File& file, Fu
     AcdfLocal local;
     AcdfBrdf brdf;
     AcdfTable table;
-    AcdfIndexed indexed;
-    const int views = acdf_environment(c, &environment) + acdf_local(c, &local) + acdf_brdf(c, &brdf) +
-                      acdf_table(c, &table) + acdf_indexed(c, &indexed);
-    require(views == 1);
+    AcdfIndexed maps;
+    const int views =
+        acdf_environment(c, &environment) + acdf_local(c, &local) + acdf_brdf(c, &brdf) + acdf_table(c, &table);
+    acdf::IndexedEnvironment in_cpp;
+    require(acdf_indexed(c, &maps, &error) == acdf::IndexedEnvironment::open(file, in_cpp).ok());
+    require(maps.tables.bytes == in_cpp.table_bytes() && (error.code == ACDF_OK) == !in_cpp.empty());
+    require(views == (file.kind() != ACDF_KIND_INDEXED));
+    acdf_indexed_close(&maps);
     float v[3], wi[3];
     random.unit_vector(v, true);
     random.unit_vector(wi, false);
@@ -215,7 +222,14 @@ void sample_walk(const acdf::File& file, FuzzRandom& random) {
     sample_sky_walk(tables, file.kind() == ACDF_KIND_INDEXED, random);
 }
 
-void sample_everything(const acdf::IndexedEnvironment& maps, FuzzRandom& random) {
+/// What the rules of maps refuse has none; `validate_maps` agrees.
+void sample_maps(const acdf::File& file, FuzzRandom& random) {
+    acdf::IndexedEnvironment maps;
+    const acdf::Status status = acdf::IndexedEnvironment::open(file, maps);
+    const auto ignore = [](const acdf::Finding&, void*) { return true; };
+    require(acdf::validate_maps(file, ignore, nullptr).valid() == status.ok() && maps.empty() == !status.ok());
+    require(status.ok() || (status.rule != 0 && status.message[0] != 0 && status.offset <= file.size()));
+    if (!status.ok()) return;
     for (int n = 0; n < 4; ++n) {
         const AcdfIndexed& data = maps.data();
         double at[3];
@@ -251,7 +265,7 @@ void sample_everything(const acdf::File& file, const void* bytes, std::size_t si
     if (file.kind() == ACDF_KIND_LOCAL) sample_everything(file.local(), random);
     if (file.kind() == ACDF_KIND_BRDF) sample_everything(file.brdf(), random);
     if (file.kind() == ACDF_KIND_TABLE) sample_everything(file.table(), random);
-    if (file.kind() == ACDF_KIND_INDEXED) sample_everything(file.indexed(), random);
+    if (file.kind() == ACDF_KIND_INDEXED) sample_maps(file, random);
     if (file.header().header_crc % 4 == 1) sample_walk(file, random);
     if (size % 8 == 0 && file.header().header_crc % 8 == 0) sample_in_c(bytes, size, file, random); // loads again
 }

@@ -3,6 +3,8 @@
 #include "tests/lib/reader/half_vectors.h"
 #include "tests/shaders/answers.h"
 
+#include <acdf/indexed/views.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -26,11 +28,11 @@ double relative(double a, double b) { return a == b ? 0.0 : std::fabs(a - b) / s
 
 class Reader {
 public:
-    explicit Reader(const acdf::File& file) : file_(file) {}
+    explicit Reader(const acdf::File& file) : file_(file) { acdf::IndexedEnvironment::open(file, maps_); }
     /// A normal, or of a BRDF a direction of view, of several maps coordinates.
     void at(const float given[3]) {
         if (file_.kind() == ACDF_KIND_LOCAL) point_ = file_.local().at(given);
-        if (maps()) sky_ = file_.indexed().at(double{given[0]}, double{given[1]}, double{given[2]});
+        if (maps()) sky_ = maps_.at(double{given[0]}, double{given[1]}, double{given[2]});
         std::copy_n(given, 3, wo_);
     }
     acdf::DirectionSample sample(double u0, double u1) const {
@@ -72,7 +74,7 @@ private:
         for (int k = 0; k < mix.count; ++k) most = std::max(most, 1.0 / mix.weight[k]);
         return most;
     }
-    bool maps() const { return file_.kind() == ACDF_KIND_INDEXED; }
+    bool maps() const { return !maps_.empty(); }
     /// Of the pdf: what a step of 2^-20 changes where the cone of the sun falls steeply.
     double cone_moves(const float d[3]) const {
         const AcdfCone& cone = sky_.data().cone;
@@ -83,6 +85,7 @@ private:
 
     const acdf::File& file_;
     AcdfLocalPoint point_ = {};
+    acdf::IndexedEnvironment maps_; // empty for other kinds
     acdf::MixedEnvironment sky_;
     float wo_[3] = {};
 };

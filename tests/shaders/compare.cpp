@@ -9,6 +9,7 @@
 #include "tests/shaders/answers.h"
 #include "tests/shaders/check.h"
 
+#include <acdf/indexed/views.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -25,8 +26,7 @@ namespace {
 using namespace acdf_test;
 
 // From the first coordinate of each axis to the last, and a little beyond.
-void write_coordinates(const acdf::File& file, std::mt19937& random, float* out) {
-    const AcdfIndexed data = file.indexed().data();
+void write_coordinates(const AcdfIndexed& data, std::mt19937& random, float* out) {
     const double* of_axis = data.coordinates;
     for (std::uint32_t axis = 0; axis < data.axes; of_axis += data.counts[axis++]) {
         const double low = of_axis[0], wide = of_axis[data.counts[axis] - 1] - low;
@@ -39,6 +39,8 @@ void write_inputs(const acdf::File& file, std::size_t count, const std::string& 
     std::mt19937 random(7);
     std::vector<std::uint32_t> words;
     std::vector<float> directions, normals;
+    acdf::IndexedEnvironment maps; // empty for other kinds
+    acdf::IndexedEnvironment::open(file, maps);
     const auto add_direction = [&](std::vector<float>& out) {
         const double z = 1.0 - static_cast<double>(random()) * 0x1p-31,
                      phi = 2.0 * M_PI * static_cast<double>(random()) * 0x1p-32;
@@ -53,7 +55,7 @@ void write_inputs(const acdf::File& file, std::size_t count, const std::string& 
     for (std::size_t i = 0; i < count; ++i) {
         add_direction(normals);
         if (file.kind() == ACDF_KIND_BRDF) normals[4 * i + 2] = std::max(std::fabs(normals[4 * i + 2]), 1e-6f);
-        if (file.kind() == ACDF_KIND_INDEXED) write_coordinates(file, random, &normals[4 * i]);
+        if (!maps.empty()) write_coordinates(maps.data(), random, &normals[4 * i]);
     }
     write_all(folder + "/words.bin", words);
     write_all(folder + "/directions.bin", directions);

@@ -66,7 +66,9 @@ std::string thumbnail(const std::string& path, const std::string& name) {
     } else if (file.kind() == ACDF_KIND_ENVIRONMENT) {
         image = pdf_image(plot_map(build::Layout::latlong, kMapWidth), pdf_of(file.environment()));
     } else if (file.kind() == ACDF_KIND_INDEXED) {
-        image = pdf_image(plot_map(build::Layout::latlong, kMapWidth), pdf_of(first_environment(file)));
+        IndexedEnvironment maps;
+        if (!IndexedEnvironment::open(file, maps).ok()) return "";
+        image = pdf_image(plot_map(build::Layout::latlong, kMapWidth), pdf_of(first_environment(maps)));
         shows += ", its first map";
     } else {
         return "";

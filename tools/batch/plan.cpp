@@ -3,11 +3,11 @@
 #include "build/text/format_names.h"
 #include "compress/parallel.h"
 #include "input/probe/source.h"
-#include "reader/check/check.h"
 #include "reader/check/rule_codes.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/messages.h"
 #include "tools/cli/sequence.h"
+#include "tools/cli/validation.h"
 #include "tools/commands.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -37,7 +37,7 @@ AcdfKind file_kind(const BatchJob& job) {
 
 std::string first_fault(const std::vector<std::uint8_t>& bytes) {
     std::string fault;
-    validate(bytes.data(), bytes.size(), [&](const Finding& finding) {
+    validate_all(bytes, [&](const Finding& finding) {
         if (code_of(finding.number) == ACDF_OK) return true;
         fault = "rule " + std::to_string(finding.number) + ": " + finding.detail;
         return false;

@@ -27,8 +27,9 @@ std::vector<std::string> indexed_axes(const File& file) {
     return out;
 }
 
-MixedEnvironment chosen_environment(const std::string& path, const File& file, const std::vector<std::string>& at) {
-    const std::vector<std::string> axes = indexed_axes(file);
+MixedEnvironment chosen_environment(const std::string& path, const LoadedFile& loaded,
+                                    const std::vector<std::string>& at) {
+    const std::vector<std::string> axes = indexed_axes(loaded.file);
     std::vector<double> coordinates(axes.size(), NAN);
     for (std::size_t i = 0; i < at.size(); ++i) {
         const std::size_t equals = at[i].find('=');
@@ -44,13 +45,14 @@ MixedEnvironment chosen_environment(const std::string& path, const File& file, c
     }
     for (const double coordinate : coordinates)
         if (std::isnan(coordinate)) throw Failure(path + ": holds several maps; choose with " + wanted(axes));
-    return file.indexed().at(coordinates.data());
+    return loaded.maps.at(coordinates.data());
 }
 
-MixedEnvironment first_environment(const File& file) {
+MixedEnvironment first_environment(const IndexedEnvironment& maps) {
     double coordinates[ACDF_MOST_INDEXED_AXES] = {};
-    for (std::uint32_t i = 2; i < file.description().axis_count; ++i) coordinates[i - 2] = file.axis(i).low;
-    return file.indexed().at(coordinates);
+    const double* of_axis = maps.data().coordinates;
+    for (std::uint32_t i = 0; i < maps.axes(); of_axis += maps.data().counts[i++]) coordinates[i] = *of_axis;
+    return maps.at(coordinates);
 }
 
 } // namespace acdf::tools

@@ -82,7 +82,9 @@ std::vector<std::uint8_t> read_acdf_bytes(const std::string& path) {
 LoadedFile load_file(const std::string& path) {
     LoadedFile loaded;
     loaded.bytes = read_acdf_bytes(path);
-    const Status status = File::from_memory(loaded.bytes.data(), loaded.bytes.size(), loaded.file);
+    Status status = File::from_memory(loaded.bytes.data(), loaded.bytes.size(), loaded.file);
+    if (status.ok() && loaded.file.kind() == ACDF_KIND_INDEXED)
+        status = IndexedEnvironment::open(loaded.file, loaded.maps);
     if (status.ok()) return loaded;
     if (status.rule == 2002)
         throw Failure(shown(path) + ": " + what_is_it(loaded.bytes.data(), loaded.bytes.size()));
@@ -93,8 +95,10 @@ LoadedFile load_file(const std::string& path) {
 
 void check_reads_back(const std::uint8_t* data, std::size_t size) {
     File file;
-    if (const Status status = File::from_memory(data, size, file); !status.ok())
-        throw Failure(std::string("cannot read back what was written: ") + status.message);
+    IndexedEnvironment maps;
+    Status status = File::from_memory(data, size, file);
+    if (status.ok() && file.kind() == ACDF_KIND_INDEXED) status = IndexedEnvironment::open(file, maps);
+    if (!status.ok()) throw Failure(std::string("cannot read back what was written: ") + status.message);
 }
 
 void fail_kind(const std::string& path, const File& file, const char* command, const char* wanted) {

@@ -1,6 +1,7 @@
 // Reading .acdf files and their bytes for the subcommands.
 #pragma once
 
+#include <acdf/indexed/views.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -28,6 +29,7 @@ bool has_magic(const std::vector<std::uint8_t>& bytes);
 struct LoadedFile {
     std::vector<std::uint8_t> bytes;
     File file;
+    IndexedEnvironment maps; ///< of a file of several; else empty
 };
 
 /// Throws Failure, which names the file, the broken rule and what would help.

@@ -126,8 +126,9 @@ void refuse_options_of_other_kinds(const MeasureArguments& options, AcdfKind kin
 }
 
 /// The map is looked up by its filter, and texel by texel where the sun is.
-void measure_indexed(const MeasureArguments& options, const File& file) {
-    const MixedEnvironment sky = chosen_environment(options.file, file, options.at);
+void measure_indexed(const MeasureArguments& options, const LoadedFile& loaded) {
+    const File& file = loaded.file;
+    const MixedEnvironment sky = chosen_environment(options.file, loaded, options.at);
     builder::Target texels;
     const ProbeTarget source = source_map(file, options.source, options.input, options.filter, texels);
     const AcdfFilter filter = options.filter.value_or(static_cast<AcdfFilter>(file.description().filter));
@@ -142,7 +143,7 @@ void measure_indexed(const MeasureArguments& options, const File& file) {
                                             {"support_violations", a.support_violations},
                                             {"sun_share", sky.sun_share()},
                                             {"bytes", file.size()},
-                                            {"memory_bytes", measure::memory_of(file)},
+                                            {"memory_bytes", measure::memory_of(file) + loaded.maps.table_bytes()},
                                             {"bins", file.description().bin_count},
                                             {"total", a.total},
                                             {"total_stored", sky.total()}};
@@ -178,7 +179,7 @@ void run(const MeasureArguments& options) {
                                            options.mesh, options.up, options.points, options.baselines,
                                            options.json, options.quiet, options.filter});
     case ACDF_KIND_INDEXED:
-        return measure_indexed(options, loaded.file);
+        return measure_indexed(options, loaded);
     default:
         break;
     }

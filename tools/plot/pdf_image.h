@@ -5,6 +5,7 @@
 #include "compress/target.h"
 #include "tools/cli/progress.h"
 
+#include <acdf/indexed/views.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 

@@ -125,7 +125,7 @@ void refuse_options_of_other_kinds(const PlotArguments& options, AcdfKind kind) 
 
 void load_indexed(const PlotArguments& options, Plotted& source) {
     const File& file = source.stored.file;
-    source.pdf = pdf_of(chosen_environment(options.file, file, options.at));
+    source.pdf = pdf_of(chosen_environment(options.file, source.stored, options.at));
     source.indexed = true;
     source.columns = file.axis(ACDF_AXIS_PHI).resolution;
     source.rows = file.axis(ACDF_AXIS_THETA).resolution;

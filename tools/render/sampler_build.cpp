@@ -124,7 +124,7 @@ Table given_file(const std::string& path, const std::vector<std::string>& at) {
     auto loaded = std::make_shared<LoadedFile>(load_file(path));
     const File* file = &loaded->file;
     LightSamplerPtr sampler = file->kind() == ACDF_KIND_INDEXED
-                                  ? measure::sky_sampler(*file, chosen_environment(path, *file, at))
+                                  ? measure::sky_sampler(*file, chosen_environment(path, *loaded, at))
                                   : measure::file_sampler(*file);
     return {loaded, std::move(sampler), file};
 }

@@ -22,6 +22,7 @@ constexpr double kBuilding = 0.9; // of the time, about
 struct MadeRow {
     MapRow row;
     std::shared_ptr<const StoredFile> file;
+    std::shared_ptr<const IndexedEnvironment> maps; ///< of one file; null: there are several
     std::shared_ptr<const measure::LightSampler> sampler;
 };
 
@@ -43,10 +44,10 @@ private:
 };
 
 /// Half way from the first map to the next of each axis: the most that a sample has to mix.
-MixedEnvironment between(const File& file, const std::vector<builder::MapAxis>& axes) {
+MixedEnvironment between(const IndexedEnvironment& maps, const std::vector<builder::MapAxis>& axes) {
     double at[ACDF_MOST_INDEXED_AXES] = {};
     for (std::size_t i = 0; i < axes.size(); ++i) at[i] = 0.5 * (axes[i].coordinates[0] + axes[i].coordinates[1]);
-    return file.indexed().at(at);
+    return maps.at(at);
 }
 
 MadeRow one_file(const std::vector<builder::IndexedMap>& maps, builder::IndexedOptions options,
@@ -60,7 +61,11 @@ MadeRow one_file(const std::vector<builder::IndexedMap>& maps, builder::IndexedO
     for (const builder::MapAccuracy& each : made.accuracy) variances.add(each.relative_variance);
     variances.finish(out.row);
     out.file = std::make_shared<StoredFile>(std::move(made.bytes));
-    out.sampler = measure::sky_sampler(out.file->file, between(out.file->file, options.axes));
+    IndexedEnvironment stored;
+    if (const Status status = IndexedEnvironment::open(out.file->file, stored); !status.ok())
+        throw Failure(std::string("cannot read back what was made: ") + status.message);
+    out.maps = std::make_shared<const IndexedEnvironment>(std::move(stored));
+    out.sampler = measure::sky_sampler(out.file->file, between(*out.maps, options.axes));
     return out;
 }
 

@@ -5,7 +5,7 @@
 //     acdf::builder::IndexedFile made; // six maps: at 6:00 of both turbidities, at 9:00, at 12:00
 //     const acdf::builder::Status status = acdf::builder::indexed(maps, options, made);
 //
-// acdf::File::indexed() samples them, at their coordinates and between.
+// acdf::IndexedEnvironment (acdf/indexed/views.h) samples them, at their coordinates and between.
 #pragma once
 
 #include <acdf/builder.h>

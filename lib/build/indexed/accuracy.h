@@ -4,7 +4,7 @@
 #include "build/indexed/sun.h"
 
 #include <acdf/accuracy.h>
-#include <acdf/views.h>
+#include <acdf/indexed/views.h>
 
 namespace acdf::build {
 

@@ -3,8 +3,8 @@
 #include "build/indexed/texels.h"
 #include "compress/parallel.h"
 
-#include <acdf/cone.h>
-#include <acdf/indexed.h>
+#include <acdf/indexed/cone.h>
+#include <acdf/indexed/indexed.h>
 
 #include <algorithm>
 #include <cmath>

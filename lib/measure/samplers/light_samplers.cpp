@@ -74,7 +74,7 @@ struct SkyFile {
     const File& file;
     MixedEnvironment view;
     SkyFile(const File& f, const MixedEnvironment& v) : file(f), view(v) {}
-    std::uint64_t bytes() const { return memory_of(file); }
+    std::uint64_t bytes() const { return memory_of(file) + 4 * std::uint64_t{view.data().top->words}; }
 };
 
 class SkyPoint final : public PointSampler {

@@ -10,6 +10,7 @@
 #include "measure/samplers/brdf_table.h"
 #include "measure/samplers/light_sampler.h"
 
+#include <acdf/indexed/views.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -66,7 +67,7 @@ std::uint64_t memory_of(const File& file);
 /// A file of an environment, a local environment or a BRDF; std::invalid_argument for tables. `bytes` is memory_of.
 /// BRDFs are turned to the surface's frame (surface_frame); views below the surface sample nothing.
 LightSamplerPtr file_sampler(const File& file);
-/// One of the environments of a file of several maps.
+/// One of the environments of a file of several maps. `bytes` counts their tables, too.
 LightSamplerPtr sky_sampler(const File& file, const MixedEnvironment& sky);
 /// A local environment by normals alone, also where it stores visibility cells.
 LightSamplerPtr normals_alone_sampler(const File& file);

@@ -1,6 +1,7 @@
-/* The C interface of the reader: open a file here, then sample and evaluate with inline functions or linked ones.
- * acdf/sample.h, local.h, brdf.h, table.h and indexed.h are inlined. Languages without a C compiler can call
- * acdf/linked.h.
+/* The C interface of the reader: open a file here, then sample and evaluate with the inline functions of
+ * acdf/sample.h, local.h, brdf.h and table.h. Languages without a C compiler can call those of
+ * acdf/arrays/arrays.h, of a library beside this one. Another one, acdf/indexed/open.h, makes views of environments
+ * of several maps.
  *
  *   AcdfError error;
  *   AcdfFile* file = acdf_open("probe.acdf", &error);
@@ -17,8 +18,6 @@
 #include <acdf/sample.h>
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include <acdf/brdf.h>
-#include <acdf/indexed.h>
-#include <acdf/linked.h>
 #include <acdf/local.h>
 #include <acdf/moved.h>
 #include <acdf/table.h>

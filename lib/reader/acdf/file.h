@@ -3,7 +3,7 @@
  * The safety contract is that of acdf/reader.h: any bytes may be passed in; a file that was accepted can be
  * sampled for ever without reading outside it. An open file is never changed: any number of threads may use
  * it at once. Functions take only open files, not null, but for acdf_close and acdf_environment, acdf_local,
- * acdf_brdf, acdf_table and acdf_indexed, which return 0. */
+ * acdf_brdf and acdf_table, which return 0. */
 #ifndef ACDF_FILE_H
 #define ACDF_FILE_H
 
@@ -19,7 +19,6 @@ struct AcdfEnvironment;
 struct AcdfLocal;
 struct AcdfBrdf;
 struct AcdfTable;
-struct AcdfIndexed;
 struct AcdfMove;
 
 /* What kind of failure; the numbers are stable. */
@@ -72,8 +71,6 @@ int acdf_local(const AcdfFile* file, struct AcdfLocal* out);
 int acdf_brdf(const AcdfFile* file, struct AcdfBrdf* out);
 /* The same for a table file, to be used with acdf/table.h. */
 int acdf_table(const AcdfFile* file, struct AcdfTable* out);
-/* The same for an environment of several maps, to be used with acdf/indexed.h. */
-int acdf_indexed(const AcdfFile* file, struct AcdfIndexed* out);
 
 /* The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how many
  * there are (acdf/moved.h). */

@@ -12,7 +12,6 @@
 #define ACDF_MOVED_H
 
 #include <acdf/brdf.h>
-#include <acdf/indexed.h>
 #include <acdf/local.h>
 #include <acdf/table.h>
 
@@ -84,13 +83,6 @@ static inline void acdf_move_table(AcdfTable* table, const AcdfMove* moves, int 
     ACDF_MOVE(AcdfBin, table->bins);
     ACDF_MOVE(AcdfAxis, table->axes);
     ACDF_MOVE(AcdfPartner, table->partner);
-}
-
-/* The same of an environment of several maps. Mixtures are made of it afterwards. */
-static inline void acdf_move_indexed(AcdfIndexed* indexed, const AcdfMove* moves, int count) {
-    ACDF_MOVE(double, indexed->coordinates);
-    ACDF_MOVE(AcdfMap, indexed->maps);
-    ACDF_MOVE(AcdfTop, indexed->top);
 }
 #undef ACDF_MOVE
 

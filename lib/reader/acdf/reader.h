@@ -32,7 +32,6 @@ class EnvironmentView;
 class LocalEnvironmentView;
 class BrdfView;
 class TableView;
-class IndexedEnvironment;
 
 /// The outcome of loading: a value, never an exception.
 struct Status : AcdfError {
@@ -138,8 +137,6 @@ public:
     BrdfView brdf() const noexcept;
     /// The view of a table file: only where kind() == ACDF_KIND_TABLE.
     TableView table() const noexcept;
-    /// The view of an environment of several maps: only where kind() == ACDF_KIND_INDEXED.
-    IndexedEnvironment indexed() const noexcept;
     /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
     /// many there are (acdf/moved.h).
     int memory(AcdfMove* moves) const noexcept { return acdf_memory(opened_, moves); }

@@ -1,5 +1,5 @@
 /* Trees of halvings whose top has codes of several rows, and which is shared below that: what mixtures of maps
- * (acdf/indexed.h) and of normals (acdf/normal_rows.h) have in common. Part of these. */
+ * (lib/indexed) and of normals (acdf/normal_rows.h) have in common. Part of these. */
 #ifndef ACDF_TOP_TILE_H
 #define ACDF_TOP_TILE_H
 

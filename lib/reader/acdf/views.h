@@ -8,7 +8,6 @@
 
 #include <acdf/brdf.h>
 #include <acdf/environment_view.h>
-#include <acdf/indexed.h>
 #include <acdf/local.h>
 #include <acdf/table.h>
 
@@ -154,53 +153,6 @@ public:
     ACDF_METHOD double share(const std::uint32_t* index) const noexcept {
         const AcdfBin* bin = acdf_table_bin(&data_, index);
         return bin ? static_cast<double>(bin->share) : 0.0;
-    }
-};
-
-/// An environment at some coordinates of an IndexedEnvironment: up to eight of its maps, mixed. Half a KiB by
-/// value.
-class MixedEnvironment : public ViewOf<AcdfMixed> {
-public:
-    using ViewOf<AcdfMixed>::ViewOf;
-    ACDF_METHOD bool empty() const noexcept { return data_.top == nullptr; }
-
-    /// Samples a direction; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite, > 0.
-    ACDF_INLINE_METHOD DirectionSample sample(double u0, double u1) const noexcept {
-        return acdf_mixed_sample(&data_, u0, u1);
-    }
-    /// The pdf in sr^-1 of a unit direction; 0 where none falls, for NaN and for non-unit directions.
-    ACDF_INLINE_METHOD float pdf(const float direction[3]) const noexcept {
-        return acdf_mixed_pdf(&data_, direction);
-    }
-    /// Random numbers that sample `direction`; false where the pdf is 0.
-    ACDF_METHOD bool invert(const float direction[3], double u[2]) const noexcept {
-        return acdf_mixed_invert(&data_, direction, u) != 0;
-    }
-    /// Integral of the sampled function over the sphere, linear between maps.
-    ACDF_METHOD double total() const noexcept { return data_.total; }
-    /// The share of samples in the cone of the sun; 0 where there is none.
-    ACDF_METHOD double sun_share() const noexcept { return data_.sun_share; }
-};
-
-/// Environments along one to three axes, such as the hours of a day.
-class IndexedEnvironment : public ViewOf<AcdfIndexed> {
-public:
-    using ViewOf<AcdfIndexed>::ViewOf;
-    ACDF_METHOD bool empty() const noexcept { return data_.columns == 0; }
-
-    /// How many axes there are.
-    ACDF_METHOD std::uint32_t axes() const noexcept { return data_.axes; }
-    /// The environment at coordinates[axes()], mixed of the maps around them. Beyond the first and the last of an
-    /// axis these stand. Takes some microseconds: once a frame.
-    ACDF_METHOD MixedEnvironment at(const double* coordinates) const noexcept {
-        AcdfMixed out;
-        acdf_indexed_at(&data_, coordinates, &out);
-        return MixedEnvironment(out);
-    }
-    /// The same of one, two or three axes: numbers that are left out are of no meaning where the axis is missing.
-    ACDF_METHOD MixedEnvironment at(double first, double second = 0.0, double third = 0.0) const noexcept {
-        const double coordinates[3] = {first, second, third};
-        return at(coordinates);
     }
 };
 

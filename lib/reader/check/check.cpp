@@ -287,8 +287,11 @@ void check_halved(const Payloads& payloads, [[maybe_unused]] u32 kind, const Acd
     check_halvings(halvings, nullptr, report, allocator, parts);
     if (report.stopped()) return;
 #ifndef ACDF_ENVIRONMENT_ONLY
-    if (kind == ACDF_KIND_INDEXED)
-        return check_indexed(payloads.of[chunk_description], payloads.of[chunk_maps], report, parts);
+    if (kind == ACDF_KIND_INDEXED) { // else rule 7020, of lib/indexed as all of its maps
+        if (parts.description->axis_count >= 2)
+            check_environment_axes(payloads.of[chunk_description], report, parts);
+        return;
+    }
     if (kind == ACDF_KIND_LOCAL) return check_normals(payloads, report, parts);
     if (kind == ACDF_KIND_BRDF) return check_halved_brdf(payloads, report, parts);
 #endif

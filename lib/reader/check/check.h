@@ -117,10 +117,6 @@ struct Parts {
     const float* nodes = nullptr;               ///< views->theta_count
     const AcdfLocalHeader* local = nullptr;     ///< of local environments
     AcdfVisibilityTable visibility = {};        ///< of local environments; its header is null where absent
-    const AcdfMapsHeader* maps = nullptr;       ///< of an indexed environment
-    const double* coordinates = nullptr;        ///< of its maps
-    const AcdfMap* of_map = nullptr;            ///< maps->map_count
-    const u8* map_splits = nullptr;             ///< a bit for each halving; then the codes of each map
     const AcdfNormalsHeader* normals = nullptr; ///< of a local environment on one tree of halvings
     const u8* normal_splits = nullptr;          ///< a bit for each halving; then the codes of each row,
     u64 normals_size = 0;                       ///< of so many bytes

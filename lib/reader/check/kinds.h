@@ -28,10 +28,6 @@ ACDF_ONCE void check_brdf_kind(const Payloads& payloads, Report& report, Parts& 
 /// What a BRDF on one tree of halvings has beside HALV: BINS, NORM and VIEW; needs parts.halvings. Sets what
 /// check_rows and check_brdf_kind set.
 ACDF_ONCE void check_halved_brdf(const Payloads& payloads, Report& report, Parts& parts) noexcept;
-/// What an indexed environment has beside HALV: MAPS and its axes; needs parts.halvings. Sets parts.maps and what
-/// belongs to it.
-ACDF_ONCE void check_indexed(const Payload& description, const Payload& maps, Report& report,
-                             Parts& parts) noexcept;
 /// BINS and NORM, of bins that have rows at the top of a tree of halvings; needs parts.halvings. Sets parts.bins,
 /// parts.normals and what belongs to it.
 void check_rows(const Payloads& payloads, Report& report, Parts& parts) noexcept;

@@ -34,7 +34,8 @@ Status ShaderTables::make(const File& file, ShaderTables& out) noexcept {
     if (file.kind() == ACDF_KIND_TABLE)
         return none("it is neither an environment nor a local environment nor a BRDF");
     if (!acdf::make_walk(file, out.block_))
-        return none("its cells tilt (--fit pdf), too many share their curves, or memory is too little");
+        return none("its cells tilt (--fit pdf), too many share their curves, its maps break a rule, or memory is "
+                    "too little");
     return {};
 }
 

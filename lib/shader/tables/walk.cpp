@@ -5,6 +5,8 @@
 #include "shader/tables/walk_cells.h"
 #include "shader/tables/walk_maps.h"
 
+#include <acdf/indexed/views.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -16,7 +18,7 @@ namespace {
 using u32 = std::uint32_t;
 
 // What a file samples from, if it is one that can be traversed.
-AcdfLocal local_of(const File& file) {
+AcdfLocal local_of(const File& file, const AcdfIndexed& maps) {
     AcdfLocal local = {};
     if (file.kind() == ACDF_KIND_LOCAL) return file.local().data();
     if (file.kind() == ACDF_KIND_ENVIRONMENT) {
@@ -24,7 +26,7 @@ AcdfLocal local_of(const File& file) {
         return local;
     }
     if (file.kind() == ACDF_KIND_INDEXED) {
-        const AcdfIndexed maps = file.indexed().data();
+        local.environment.halved = maps.halved;
         local.environment.columns = maps.columns;
         local.environment.rows = maps.rows;
         local.environment.parameterization = maps.parameterization;
@@ -44,16 +46,13 @@ AcdfLocal local_of(const File& file) {
 
 class WalkMaker {
 public:
-    explicit WalkMaker(const File& file)
-        : file_(file), local_(local_of(file)), environment_(local_.environment), indexed_(file.indexed().data()),
-          nodes_(environment_.halved ? acdf_halvings_nodes(environment_.halved)
-                 : indexed_.top      ? ACDF_TOP_ARRAY(AcdfHalving, indexed_.top, indexed_.top->nodes)
-                                     : nullptr),
+    WalkMaker(const File& file, const AcdfIndexed& maps)
+        : file_(file), local_(local_of(file, maps)), environment_(local_.environment), indexed_(maps),
+          nodes_(environment_.halved ? acdf_halvings_nodes(environment_.halved) : nullptr),
           rows_(local_.rows_of_normals),
           cells_(environment_.parameterization, environment_.columns, environment_.rows),
           most_leaves_(2 * std::size_t{file.tree_units()} + 64 +
-                       (environment_.halved ? 2 * std::size_t{environment_.halved->count} : 0) +
-                       (indexed_.top ? indexed_.top->top - indexed_.top->nodes : 0)) {}
+                       (environment_.halved ? 2 * std::size_t{environment_.halved->count} : 0)) {}
 
     bool make();
     bool assemble(AcdfBlock& block) const;
@@ -91,7 +90,7 @@ private:
     const File& file_;
     AcdfLocal local_;
     AcdfEnvironment environment_;
-    AcdfIndexed indexed_;
+    const AcdfIndexed& indexed_; // zero: the file is of another kind
     const AcdfHalving* nodes_;   // of the tree, if it is one of halvings
     const AcdfNormalRows* rows_; // at its top, of normals or views; null: there are none
     WalkCells cells_;
@@ -355,7 +354,9 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
 } // namespace
 
 bool make_walk(const File& file, AcdfBlock& block) noexcept {
-    WalkMaker maker(file);
+    IndexedEnvironment maps;
+    if (file.kind() == ACDF_KIND_INDEXED && !IndexedEnvironment::open(file, maps).ok()) return false;
+    WalkMaker maker(file, maps.data());
     return maker.make() && maker.assemble(block);
 }
 

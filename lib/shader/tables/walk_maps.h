@@ -3,7 +3,7 @@
 
 #include "shader/tables/growable.h"
 
-#include <acdf/indexed.h>
+#include <acdf/indexed/indexed.h>
 #include <acdf/shader/maps.h>
 
 namespace acdf {

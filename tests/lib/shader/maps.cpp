@@ -1,8 +1,10 @@
 // Skies between maps for shaders beside the reader's: a sample has the pdf that is told for its direction, and both
 // are the reader's but for the rounding of floats and directions next to a border.
+#include "tests/lib/indexed/indexed_builder.h"
 #include "tests/lib/reader/golden_files.h"
-#include "tests/lib/reader/indexed_builder.h"
 #include "tests/lib/shader/walked_file.h"
+
+#include <acdf/indexed/views.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,8 +24,8 @@ bool sky_pdfs_agree(const acdf::MixedEnvironment& sky, float a, float b) {
     return std::fabs(double{a} - double{b}) <= 2e-5 * std::max(double{a}, double{b}) + steep;
 }
 
-void compare_skies(const WalkedFile& file, const double at[3], std::mt19937& random, SkyCounts& counts) {
-    const acdf::MixedEnvironment sky = file.file.indexed().at(at);
+void compare_skies(const WalkedFile& file, const acdf::MixedEnvironment& sky, const double at[3],
+                   std::mt19937& random, SkyCounts& counts) {
     const std::uint32_t* words = file.tables.words();
     const AcdfShaderSky shader = acdf_sky_at(words, float(at[0]), float(at[1]), float(at[2]));
     EXPECT_NEAR(double{shader.total}, sky.total(), 1e-5 * sky.total());
@@ -50,7 +52,9 @@ void compare_skies(const WalkedFile& file, const double at[3], std::mt19937& ran
 
 void compare_all_skies(const WalkedFile& file) {
     ASSERT_TRUE(file.status.ok()) << file.status.message;
-    const AcdfIndexed data = file.file.indexed().data();
+    acdf::IndexedEnvironment maps;
+    ASSERT_TRUE(acdf::IndexedEnvironment::open(file.file, maps).ok());
+    const AcdfIndexed& data = maps.data();
     std::mt19937 random(5);
     SkyCounts counts;
     for (int place = 0; place < 40; ++place) {
@@ -62,7 +66,7 @@ void compare_all_skies(const WalkedFile& file) {
             at[axis] = place < 4 ? of_axis[random() % data.counts[axis]]
                                  : double(float(low + wide * (double(random()) * 0x1p-32 * 1.2 - 0.1)));
         }
-        compare_skies(file, at, random, counts);
+        compare_skies(file, maps.at(at), at, random, counts);
         if (testing::Test::HasFatalFailure()) return;
     }
     EXPECT_LT(counts.other_cells, 1e-3 * counts.samples);

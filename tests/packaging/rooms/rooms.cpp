@@ -1,8 +1,11 @@
 // A light file by each room beside the reader: rooms LOCAL.acdf.
+#include <acdf/acdf.h>
+#include <acdf/arrays/arrays.h>
 #if __has_include(<acdf/batch/batch.h>)
 #include <acdf/batch/batch.h>
 #define BATCH 1
 #endif
+#include <acdf/indexed/views.h>
 #include <acdf/product/product.h>
 #include <acdf/reader.h>
 #include <acdf/shader/tables.h>
@@ -24,6 +27,17 @@ acdf::ProductSample straight_up(const float* wo, double, double) {
     return {{0.0f, 0.0f, 1.0f}, cosine_pdf(wo, up)};
 }
 
+// Arrays give what single calls do.
+bool samples_in_arrays(const char* path, const acdf::LocalEnvironmentView& light) {
+    const float up[3] = {0.0f, 0.0f, 1.0f};
+    const double u[2] = {0.3, 0.4};
+    float direction[3], pdf = 0.0f;
+    AcdfFile* file = acdf_open(path, nullptr);
+    const bool sampled = file && acdf_sample_local_array(file, up, 1, u, 1, direction, &pdf) == 1;
+    acdf_close(file);
+    return sampled && pdf > 0.0f && pdf == light.sample(up, u[0], u[1]).pdf;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -35,6 +49,9 @@ int main(int argc, char** argv) {
     const auto point = sampler.at(up, up);
     const acdf::ProductSample s = sampler.sample(point, 0.9, 0.4);
     if (!(s.pdf > 0.0f) || sampler.pdf(point, s.direction) != s.pdf) return 1;
+    if (!samples_in_arrays(argv[1], light)) return 1;
+    acdf::IndexedEnvironment maps;
+    if (acdf::IndexedEnvironment::open(file, maps).ok() || !maps.empty()) return 1; // it has none
     acdf::ShaderTables tables;
     if (!acdf::ShaderTables::make(file, tables).ok()) return 1;
 #ifdef BATCH

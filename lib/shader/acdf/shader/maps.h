@@ -3,7 +3,7 @@
  * (acdf/dialect.h).
  *
  * Each map divides the top of the tree by shares of its own; below, all maps share the tree of acdf/shader/tree.h.
- * A sky is a mixture of up to eight maps, and the cone of the sun (acdf/indexed.h, acdf/cone.h). Pdfs are the
+ * A sky is a mixture of up to eight maps, and the cone of the sun (acdf/indexed/indexed.h, cone.h). Pdfs are the
  * reader's but for the rounding of floats; at the edge of the cone, where its pdf ends, by some 1e-5 of its peak.
  */
 #ifndef ACDF_SHADER_MAPS_H
@@ -25,7 +25,7 @@ extern "C" {
 #define ACDF_MAPS_MAPS 9u    /* 6 words each, f32: share of the light, of it that of the sun; an AcdfShaderSun */
 #define ACDF_MAPS_SHARES 10u /* f32, one a split and map: the lesser part, below 0 where it is the upper one */
 #define ACDF_MAPS_COUNT 11u  /* of all maps */
-#define ACDF_MAPS_ROOTS 12u  /* of the cones' profile (acdf/cone.h) */
+#define ACDF_MAPS_ROOTS 12u  /* of the cones' profile (acdf/indexed/cone.h) */
 #define ACDF_MAPS_TOTAL 13u  /* f32: integral of all maps together */
 #define ACDF_MAPS_WORDS 14u
 

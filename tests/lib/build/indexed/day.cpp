@@ -45,7 +45,7 @@ protected:
         for (double hour = first_hour; hour < 19.5; hour += 3 * 15.0 / 23.0)
             for (const double turbidity : turbidities) {
                 const SkyMap map = day_map(kWidth, hour, turbidity);
-                const acdf::MixedEnvironment sky = day_->file.indexed().at(hour, turbidity);
+                const acdf::MixedEnvironment sky = day_->stored.at(hour, turbidity);
                 const double ratio = day_->variance(sky, map) / own_variance(map);
                 EXPECT_LE(ratio, 5.0) << hour << ' ' << turbidity;
                 logarithms += std::log(ratio);
@@ -65,13 +65,13 @@ TEST_F(Day, tellsTheVarianceThatItHas) {
     ASSERT_EQ(day_->made.accuracy.size(), 72u);
     const SkyMap map = day_map(kWidth, hours(24)[9], 4.0);
     EXPECT_EQ(day_->made.accuracy[9 * 3 + 1].relative_variance,
-              day_->variance(day_->file.indexed().at(hours(24)[9], 4.0), map));
+              day_->variance(day_->stored.at(hours(24)[9], 4.0), map));
     EXPECT_EQ(day_->made.accuracy[9 * 3 + 1].support_violations, 0u);
 }
 
 TEST_F(Day, totalsAreLinearBetweenMaps) {
     const double noon = day_map(kWidth, 12.0, 3.0).target.total;
-    EXPECT_NEAR(day_->file.indexed().at(12.0, 3.0).total(), noon, 0.01 * noon);
+    EXPECT_NEAR(day_->stored.at(12.0, 3.0).total(), noon, 0.01 * noon);
 }
 
 /// Estimates of the light between maps, against their own noise; and their counts.
@@ -81,7 +81,7 @@ TEST_F(Day, isUnbiasedBetweenMaps) {
     for (const double hour : {4.8, 9.6, 12.3}) {
         const SkyMap map = day_map(kWidth, hour, 3.0);
         const acdf::build::TexelLookup lookup(map.texels, ACDF_FILTER_BILINEAR);
-        const acdf::MixedEnvironment sky = day_->file.indexed().at(hour, 3.0);
+        const acdf::MixedEnvironment sky = day_->stored.at(hour, 3.0);
         const AcdfGrid grid = {map.target.columns, map.target.rows, ACDF_PARAM_LATLONG};
         constexpr int kSamples = 200000;
         double sum = 0.0, squares = 0.0;
@@ -106,7 +106,7 @@ TEST_F(Day, isUnbiasedBetweenMaps) {
 TEST_F(Day, samplesBetweenMapsFollowThePdf) {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
-    const acdf::MixedEnvironment sky = day_->file.indexed().at(10.1, 2.6);
+    const acdf::MixedEnvironment sky = day_->stored.at(10.1, 2.6);
     constexpr std::uint32_t kColumns = 64,
                             kRows = 32; // cells of the tree are texels: 4 x 4 of them, 6 x 6 points each
     std::vector<double> probability(kColumns * kRows);
@@ -170,9 +170,9 @@ TEST(Morning, aSunThatIsNotOneMovesIntoTwo) {
     const SkyFile smeared(maps, options);
     EXPECT_EQ(smeared.made.suns, 0u);
     const SkyMap between = day_map(128, 8.5, 3.0);
-    EXPECT_LT(cone.variance(cone.file.indexed().at(8.5), between), 2.0);
-    EXPECT_GT(smeared.variance(smeared.file.indexed().at(8.5), between),
-              10.0 * cone.variance(cone.file.indexed().at(8.5), between));
+    EXPECT_LT(cone.variance(cone.stored.at(8.5), between), 2.0);
+    EXPECT_GT(smeared.variance(smeared.stored.at(8.5), between),
+              10.0 * cone.variance(cone.stored.at(8.5), between));
 }
 
 } // namespace

@@ -5,7 +5,7 @@
 #include "build/indexed/environment.h"
 #include "docs/examples/clear_sky/clear_sky.h"
 
-#include <acdf/views.h>
+#include <acdf/indexed/views.h>
 
 #include <gtest/gtest.h>
 
@@ -47,13 +47,16 @@ inline SkyMap day_map(int width, double hour, double turbidity) {
 struct SkyFile {
     acdf::build::IndexedEnvironmentFile made;
     acdf::File file;
+    acdf::IndexedEnvironment stored;
 
     SkyFile(const std::vector<SkyMap>& maps, const acdf::build::IndexedOptions& options) {
         std::vector<acdf::build::SunMap> views;
         for (const SkyMap& map : maps) views.push_back(map.view());
         made = acdf::build::build_indexed(views, {}, options);
         EXPECT_LE(made.bytes.size(), options.budget);
-        const acdf::Status status = acdf::File::from_memory(made.bytes.data(), made.bytes.size(), file);
+        acdf::Status status = acdf::File::from_memory(made.bytes.data(), made.bytes.size(), file);
+        EXPECT_TRUE(status.ok()) << status.message;
+        status = acdf::IndexedEnvironment::open(file, stored);
         EXPECT_TRUE(status.ok()) << status.message;
     }
     double variance(const acdf::MixedEnvironment& sky, const SkyMap& map) const {

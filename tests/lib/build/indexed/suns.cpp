@@ -115,7 +115,7 @@ void expect_no_flicker(int frames, double step, const std::function<SkyMap(doubl
     const SkyFile file(maps, along("frame", times));
     double before = 0.0;
     for (double frame = 0.0; frame <= frames - 1; frame += step) {
-        const double variance = file.variance(file.file.indexed().at(frame), map(frame));
+        const double variance = file.variance(file.stored.at(frame), map(frame));
         if (before > 0.0) {
             EXPECT_NEAR(variance / before, 1.0, 0.15) << frame;
         }

@@ -1,10 +1,10 @@
 // For every rule of the table a file that breaks it and no other.
 #include "rules/rules.h"
 #include "reader/check/rule_codes.h"
+#include "tests/lib/indexed/load.h"
 #include "tests/lib/reader/brdf_builder.h"
 #include "tests/lib/reader/check/broken.h"
 #include "tests/lib/reader/check/cases.h"
-#include "tests/lib/reader/load.h"
 #include "tests/lib/reader/normals_builder.h"
 
 #include <gtest/gtest.h>
@@ -34,10 +34,10 @@ TEST_P(BrokenRule, isFoundAndNoOther) {
     const acdf::Rule* rule = acdf::find_rule(c.rule);
     ASSERT_NE(rule, nullptr);
     const Bytes file = c.make();
-    const Findings found = findings(file, c.limits);
+    const Findings found = findings_with_maps(file, c.limits);
     EXPECT_EQ(std::set<int>(found.rules.begin(), found.rules.end()), std::set<int>{c.rule}) << found.text;
     EXPECT_LE(found.last_offset, file.size());
-    const acdf::Status status = load(file, c.limits);
+    const acdf::Status status = load_with_maps(file, c.limits);
     EXPECT_EQ(status.code, acdf::code_of(c.rule));
     if (rule->severity == acdf::Severity::warning) return;
     EXPECT_EQ(status.rule, c.rule) << status.message;

@@ -1,16 +1,19 @@
 // Environments of several maps: what calls return, against sums worked out here.
 #include "tests/lib/compress/chi_square.h"
-#include "tests/lib/reader/indexed_builder.h"
+#include "tests/lib/indexed/indexed_builder.h"
+#include "tests/lib/reader/files.h"
 #include "tests/lib/reader/load.h"
 
 #include <acdf/acdf.h>
-#include <acdf/moved.h>
-#include <acdf/views.h>
+#include <acdf/indexed/moved.h>
+#include <acdf/indexed/views.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <random>
+#include <utility>
 
 using namespace acdf_test;
 
@@ -21,16 +24,19 @@ public:
     explicit OpenedMaps(const IndexedSpec& spec, bool tables = true) : bytes_(spec.encode()) {
         acdf::LoadOptions options;
         options.tables = tables;
-        const acdf::Status status = acdf::File::from_memory(bytes_.data(), bytes_.size(), file_, options);
+        acdf::Status status = acdf::File::from_memory(bytes_.data(), bytes_.size(), file_, options);
+        EXPECT_TRUE(status.ok()) << status.message;
+        status = acdf::IndexedEnvironment::open(file_, view_);
         EXPECT_TRUE(status.ok()) << status.message;
     }
-    acdf::IndexedEnvironment view() const { return file_.indexed(); }
+    const acdf::IndexedEnvironment& view() const { return view_; }
     const acdf::File& file() const { return file_; }
     const Bytes& bytes() const { return bytes_; }
 
 private:
     Bytes bytes_;
     acdf::File file_;
+    acdf::IndexedEnvironment view_;
 };
 
 /// Without suns.
@@ -186,10 +192,10 @@ TEST(Indexed, callsOfCAreTheSameAndMove) {
     AcdfFile* file = acdf_from_memory(opened.bytes().data(), opened.bytes().size(), nullptr);
     ASSERT_NE(file, nullptr);
     AcdfIndexed indexed;
-    ASSERT_EQ(acdf_indexed(file, &indexed), 1);
+    ASSERT_EQ(acdf_indexed(file, &indexed, nullptr), 1);
     EXPECT_EQ(acdf_environment(file, nullptr), 0);
     AcdfMove moves[ACDF_MAX_MOVES];
-    const int count = acdf_memory(file, moves);
+    const int count = acdf_indexed_memory(file, &indexed, moves);
     std::vector<std::vector<std::uint64_t>> copies;
     for (int i = 0; i < count; ++i) {
         copies.emplace_back((moves[i].bytes + 7) / 8 + 8);
@@ -198,11 +204,15 @@ TEST(Indexed, callsOfCAreTheSameAndMove) {
         std::memcpy(to, moves[i].from, moves[i].bytes);
         moves[i].to = to;
     }
-    acdf_move_indexed(&indexed, moves, count);
+    AcdfIndexed moved = indexed;
+    acdf_move_indexed(&moved, moves, count);
     acdf_close(file);
+    acdf_indexed_close(&indexed);
+    EXPECT_EQ(indexed.top, nullptr);
+    acdf_indexed_close(&indexed); // once more
     AcdfMixed sky;
     const double at = 9.5;
-    acdf_indexed_at(&indexed, &at, &sky);
+    acdf_indexed_at(&moved, &at, &sky);
     const acdf::MixedEnvironment same = opened.view().at(at);
     for (int n = 0; n < 100; ++n) {
         const AcdfDirectionSample s = acdf_mixed_sample(&sky, 0.01 * n, std::fmod(0.37 * n, 1.0));
@@ -230,6 +240,70 @@ TEST(Indexed, axesAreMixedOneByOne) {
                 (0.75 * quarter(spec, 4, false, false) + 0.25 * quarter(spec, 5, false, false)) / acdf_test::pi,
                 2e-6);
     EXPECT_EQ(opened.view().at(12.0, 1.5).data().count, 4u);
+}
+
+TEST(Indexed, otherFilesHaveNone) {
+    const Bytes bytes = complete_file().encode();
+    acdf::File file;
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+    OpenedMaps opened{IndexedSpec()};
+    acdf::IndexedEnvironment maps;
+    ASSERT_TRUE(acdf::IndexedEnvironment::open(opened.file(), maps).ok());
+    EXPECT_EQ(acdf::IndexedEnvironment::open(file, maps).code, ACDF_UNSUPPORTED);
+    EXPECT_TRUE(maps.empty());
+    AcdfIndexed indexed;
+    AcdfError error;
+    EXPECT_EQ(acdf_indexed(file.get(), &indexed, &error), 0);
+    EXPECT_EQ(error.code, ACDF_UNSUPPORTED);
+    EXPECT_EQ(acdf_indexed(nullptr, &indexed, nullptr), 0);
+    EXPECT_EQ(indexed.top, nullptr);
+}
+
+/// Counts blocks that are out; `left` more are given.
+struct Blocks {
+    int out = 0, left = 1000;
+
+    AcdfAllocator allocator() {
+        return {[](void* self, size_t bytes, size_t alignment) -> void* {
+                    auto& blocks = *static_cast<Blocks*>(self);
+                    if (blocks.left == 0) return nullptr;
+                    --blocks.left;
+                    ++blocks.out;
+                    return std::aligned_alloc(alignment, bytes);
+                },
+                [](void* self, void* block, size_t) {
+                    --static_cast<Blocks*>(self)->out;
+                    std::free(block);
+                },
+                this};
+    }
+};
+
+TEST(Indexed, tablesAreOfTheFilesAllocator) {
+    const Bytes bytes = IndexedSpec().encode();
+    Blocks blocks;
+    acdf::LoadOptions options;
+    options.allocator = blocks.allocator();
+    acdf::File file;
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, options).ok());
+    const int of_file = blocks.out;
+    {
+        acdf::IndexedEnvironment maps;
+        ASSERT_TRUE(acdf::IndexedEnvironment::open(file, maps).ok());
+        EXPECT_EQ(blocks.out, of_file + 1);
+        EXPECT_GT(maps.table_bytes(), 0u);
+        acdf::IndexedEnvironment moved = std::move(maps);
+        EXPECT_TRUE(maps.empty()); // NOLINT: what a move leaves
+        EXPECT_FALSE(moved.empty());
+        EXPECT_EQ(blocks.out, of_file + 1);
+    }
+    EXPECT_EQ(blocks.out, of_file);
+    blocks.left = 0;
+    acdf::IndexedEnvironment maps;
+    EXPECT_EQ(acdf::IndexedEnvironment::open(file, maps).code, ACDF_OUT_OF_MEMORY);
+    EXPECT_TRUE(maps.empty());
+    file = acdf::File();
+    EXPECT_EQ(blocks.out, 0);
 }
 
 } // namespace

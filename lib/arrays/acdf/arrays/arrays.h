@@ -1,16 +1,19 @@
-/* Samples and pdfs as symbols of the library, singly and in arrays. Python, Rust, Julia or C# call them where they
- * cannot compile the inline functions of acdf/sample.h, local.h, brdf.h and table.h. All arguments are numbers and
- * pointers to them. Each returns the result of the inline function, bit for bit, where that is compiled with
- * -ffp-contract=off as the library is. Else directions may differ in the last bit on processors that fuse products
- * and sums (gcc's -march=native). All are thread-safe and allocate nothing.
+/* Samples and pdfs as symbols of a library, singly and in arrays, of files that acdf/acdf.h opens. Python, Rust,
+ * Julia or C# call them where they cannot compile the inline functions of acdf/sample.h, local.h, brdf.h and
+ * table.h. All arguments are numbers and pointers to them. Each returns the result of the inline function, bit for
+ * bit, where that is compiled with -ffp-contract=off as the library is. Else directions may differ in the last bit
+ * on processors that fuse products and sums (gcc's -march=native). All are thread-safe and allocate nothing.
+ *
+ * Where acdf::batch is built, arrays of environments, local environments and BRDFs are sampled and evaluated by it,
+ * in a third of the time, about.
  *
  * Arrays are packed: two doubles u in [0, 1] a sample, three floats a direction, normal or view (unit vectors;
  * normals of any length > 0), a float a pdf (sr^-1). They may not overlap. Results have `count` items. Where
  * normals, views or indices are given, each serves `each` samples that follow one another (at least 1): item i is
  * of normal i / each; count: one serves all. A function returns 0 and writes nothing where the file is of another
  * kind, `each` is 0, or the index is null and the table has indexed axes. Arrays return 1 else. */
-#ifndef ACDF_LINKED_H
-#define ACDF_LINKED_H
+#ifndef ACDF_ARRAYS_ARRAYS_H
+#define ACDF_ARRAYS_ARRAYS_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,8 +1,8 @@
 /* A cone of directions with a round profile, as that of a sun in a map: its pdf falls from the middle to the edge.
  * With x = (1 - cos(angle)) / (1 - cos(radius)) and k = 2^roots the pdf is in proportion to (1 - x)^(k - 1), so
  * that x is found by square roots alone. Valid C99, C++17 and CUDA/HIP/SYCL. */
-#ifndef ACDF_CONE_H
-#define ACDF_CONE_H
+#ifndef ACDF_INDEXED_CONE_H
+#define ACDF_INDEXED_CONE_H
 
 #include <acdf/sphere.h>
 

@@ -1,8 +1,8 @@
-// Indexed environments that break one rule each.
+// Environments of several maps that break one rule each.
+#include "tests/lib/indexed/indexed_builder.h"
+#include "tests/lib/indexed/load.h"
 #include "tests/lib/reader/check/broken.h"
 #include "tests/lib/reader/check/cases.h"
-#include "tests/lib/reader/indexed_builder.h"
-#include "tests/lib/reader/load.h"
 
 #include <gtest/gtest.h>
 
@@ -120,7 +120,7 @@ TEST(IndexedRules, whatIsAtTheirLimitsIsRight) {
     const auto valid = [](Action<void(IndexedSpec&)> change) {
         IndexedSpec spec;
         change(spec);
-        const Findings found = findings(spec.encode());
+        const Findings found = findings_with_maps(spec.encode());
         EXPECT_TRUE(found.rules.empty()) << found.text;
     };
     valid([](IndexedSpec&) {});

@@ -1,8 +1,8 @@
 /* Environments of several maps, as of a day: one tree of halvings with a row of codes for each map (SPEC.md §15).
  * Between maps the pdf is the mixture that is linear in each indexed axis. Valid C99, C++17 and CUDA/HIP/SYCL; no
- * allocation, no errors.
+ * allocation, no errors. acdf/indexed/open.h makes the view of an open file, acdf/indexed/views.h has classes.
  *
- *   AcdfIndexed day;                                       // of acdf_indexed (acdf/acdf.h)
+ *   AcdfIndexed day;                                       // of acdf_indexed
  *   AcdfMixed sky;
  *   acdf_indexed_at(&day, coordinates, &sky);              // once a frame
  *   AcdfDirectionSample s = acdf_mixed_sample(&sky, u0, u1);
@@ -11,10 +11,11 @@
  * The random numbers that lead a map to a node are whole numbers, out of 2^31, and so are weights of maps, out of
  * 2^21. Sums of their products are exact in doubles: every machine descends alike, and the probability of a cell is
  * the one that samples have. */
-#ifndef ACDF_INDEXED_H
-#define ACDF_INDEXED_H
+#ifndef ACDF_INDEXED_INDEXED_H
+#define ACDF_INDEXED_INDEXED_H
 
-#include <acdf/cone.h>
+#include <acdf/allocator.h>
+#include <acdf/indexed/cone.h>
 #include <acdf/top_tile.h>
 
 #ifdef __cplusplus
@@ -32,12 +33,10 @@ typedef struct AcdfTopSplit {
     uint32_t child[2]; /* lower and upper half: a later split, or ACDF_TOP_TILE | a tile */
 } AcdfTopSplit;
 
-/* Tables of an open file: flat words without pointers, offsets in words from the start of this. */
+/* Tables of a view: flat words without pointers, offsets in words from the start of this. */
 typedef struct AcdfTop {
     uint32_t words; /* of all */
     uint32_t maps, splits;
-    uint32_t nodes;   /* AcdfHalving[]: the shared tree */
-    uint32_t heights; /* double[rows + 1]: acdf_row_z of lat-long grids; 0: there are none */
     uint32_t top;     /* AcdfTopSplit[splits] */
     uint32_t tiles;   /* AcdfTopTile[splits + 1] */
     uint32_t lower;   /* uint32[splits][maps]: the steps, out of 2^31, that lead to the lower half */
@@ -50,14 +49,17 @@ typedef struct AcdfTop {
 /* A checked file of several maps. */
 typedef struct AcdfIndexed {
     uint32_t columns, rows;
-    uint32_t parameterization; /* ACDF_PARAM_OCTAHEDRAL; all else is ACDF_PARAM_LATLONG */
-    uint32_t axes;             /* indexed ones, 1 to ACDF_MOST_INDEXED_AXES */
-    uint32_t counts[3];        /* of maps along each */
-    uint32_t sun;              /* 0: there is none; else roots of its cone, and one */
-    double total;              /* integral of all maps together */
-    const double* coordinates; /* those of the first axis, then of the next: each ascending */
-    const AcdfMap* maps;       /* row-major, the last axis fastest */
+    uint32_t parameterization;    /* ACDF_PARAM_OCTAHEDRAL; all else is ACDF_PARAM_LATLONG */
+    uint32_t axes;                /* indexed ones, 1 to ACDF_MOST_INDEXED_AXES */
+    uint32_t counts[3];           /* of maps along each */
+    uint32_t sun;                 /* 0: there is none; else roots of its cone, and one */
+    double total;                 /* integral of all maps together */
+    const double* coordinates;    /* those of the first axis, then of the next: each ascending */
+    const AcdfMap* maps;          /* row-major, the last axis fastest */
+    const AcdfHalvedTree* halved; /* the shared tree */
     const AcdfTop* top;
+    AcdfBlock tables;        /* where `top` lies, for acdf_indexed_close: */
+    AcdfAllocator allocator; /* the file's, which gave it */
 } AcdfIndexed;
 
 /* Where a descent begins: the probability of a split, and the random numbers that lead to it. */
@@ -67,6 +69,7 @@ typedef struct AcdfMixedStart {
 
 /* A mixture of up to eight maps, by value: an environment at some coordinates. */
 typedef struct AcdfMixed {
+    const AcdfHalvedTree* halved;
     const AcdfTop* top;
     AcdfGrid grid;
     uint32_t count; /* of maps that are mixed */
@@ -172,6 +175,7 @@ ACDF_FN void acdf_indexed_at(const AcdfIndexed* file, const double* coordinates,
     double between[3], suns[ACDF_MOST_MIXED][3], radii[ACDF_MOST_MIXED], light = 0.0, in_cone = 0.0;
     uint32_t first[3], axis, corner, corners = 1u << file->axes, left, whole[ACDF_MOST_MIXED] = {0};
     const double* of_axis = file->coordinates;
+    out->halved = file->halved;
     out->top = file->top;
     out->grid.columns = file->columns;
     out->grid.rows = file->rows;
@@ -268,8 +272,8 @@ ACDF_INLINE double acdf_mixed_descend(const AcdfMixed* sky, double u[2], AcdfSpa
     for (axis = 0; axis < 2; ++axis) {
         u[axis] = acdf_clamp(x[axis] / of[axis], 0.0, 1.0);
     }
-    share = acdf_tile_sample(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile, u, box);
-    return here * share * acdf_tile_scale(ACDF_TOP_ARRAY(double, top, top->heights), &sky->grid, tile, box);
+    share = acdf_tile_sample(acdf_halvings_nodes(sky->halved), tile, u, box);
+    return here * share * acdf_tile_scale(acdf_halved_heights(sky->halved), &sky->grid, tile, box);
 }
 
 /* The tile that holds a grid step of each axis. */
@@ -294,9 +298,8 @@ ACDF_INLINE double acdf_mixed_cell(const AcdfMixed* sky, const uint32_t position
     const uint32_t at = acdf_top_find(top, position);
     const AcdfTopTile* tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + at;
     const double here = acdf_mixed_steps(sky, ACDF_TOP_ARRAY(uint32_t, top, top->of_tile) + (size_t)at * top->maps);
-    const double share = acdf_tile_find(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile, position, box);
-    return here * 0x1p-52 * share *
-           acdf_tile_scale(ACDF_TOP_ARRAY(double, top, top->heights), &sky->grid, tile, box);
+    const double share = acdf_tile_find(acdf_halvings_nodes(sky->halved), tile, position, box);
+    return here * 0x1p-52 * share * acdf_tile_scale(acdf_halved_heights(sky->halved), &sky->grid, tile, box);
 }
 
 /* ---- samples and pdfs ----------------------------------------------------------------------------------- */
@@ -356,7 +359,7 @@ ACDF_INLINE AcdfDirectionSample acdf_mixed_sample(const AcdfMixed* sky, double u
     }
     u[1] = (u[1] - sky->sun_share) / (1.0 - sky->sun_share);
     p = acdf_mixed_descend(sky, u, box);
-    acdf_box_direction(ACDF_TOP_ARRAY(double, sky->top, sky->top->heights), &sky->grid, box, u, out.direction);
+    acdf_box_direction(acdf_halved_heights(sky->halved), &sky->grid, box, u, out.direction);
     out.pdf = acdf_mixed_both(sky, out.direction, p, &unused);
     return out;
 }
@@ -386,7 +389,7 @@ ACDF_FN void acdf_mixed_strata(const AcdfMixed* sky, const uint32_t position[2],
     tile = ACDF_TOP_ARRAY(AcdfTopTile, top, top->tiles) + (at & ~ACDF_TOP_TILE);
     if (tile->node == ACDF_LEAF) return;
     for (axis = 0; axis < 2; ++axis) steps[axis] = tile->steps[axis], box[axis] = tile->box[axis];
-    acdf_halvings_find(ACDF_TOP_ARRAY(AcdfHalving, top, top->nodes), tile->node, position, steps, box);
+    acdf_halvings_find(acdf_halvings_nodes(sky->halved), tile->node, position, steps, box);
     for (axis = 0; axis < 2; ++axis) {
         const double wide = (double)(tile->steps[axis].end[1] - tile->steps[axis].end[0]);
         strata[axis].low += strata[axis].width * ((double)(steps[axis].end[0] - tile->steps[axis].end[0]) / wide);

@@ -1,10 +1,8 @@
-#include "tables/indexed.h"
+#include "indexed/tables.h"
 
-#include "check/bits.h"
-#include "memory.h"
-#include "tables/top_tree.h"
-
-#include <cstring>
+#include "reader/check/bits.h"
+#include "reader/memory.h"
+#include "reader/tables/top_tree.h"
 
 namespace acdf {
 
@@ -17,15 +15,12 @@ u64 to_top_line(u64 words) { return (words + 15) / 16 * 16; }
 // Offsets in words.
 struct TopLayout {
     u32 bits = 0;
-    u64 nodes, heights, top, tiles, lower, of_tile, starts, words;
+    u64 top, tiles, lower, of_tile, starts, words;
 
-    TopLayout(const Parts& parts, bool latlong, bool lookup) {
-        const u64 splits = parts.maps->split_count, maps = parts.maps->map_count;
-        const u32 rows = parts.axes[ACDF_AXIS_THETA].resolution;
-        if (lookup) bits = top_lookup_bits(parts, parts.maps->split_count);
-        nodes = to_top_line(words_for(8 * sizeof(AcdfTop)));
-        heights = to_top_line(nodes + 2 * u64{parts.halving_count});
-        top = to_top_line(heights + (latlong ? 2 * (u64{rows} + 1) : 0));
+    TopLayout(const Parts& parts, const AcdfMapsHeader& header) {
+        const u64 splits = header.split_count, maps = header.map_count;
+        bits = top_lookup_bits(parts, header.split_count);
+        top = to_top_line(words_for(8 * sizeof(AcdfTop)));
         tiles = to_top_line(top + splits * (sizeof(AcdfTopSplit) / 4));
         lower = to_top_line(tiles + (splits + 1) * (sizeof(AcdfTopTile) / 4));
         of_tile = to_top_line(lower + splits * maps);
@@ -36,8 +31,9 @@ struct TopLayout {
 
 class TopMaker {
 public:
-    TopMaker(const Parts& parts, AcdfTop* top)
-        : parts_(parts), tree_(parts, parts.map_splits), maps_(*parts.maps), top_(top),
+    TopMaker(const Parts& parts, const Maps& maps, const double* heights, AcdfTop* top)
+        : tree_(parts, maps.splits), maps_(*maps.header), heights_(heights),
+          codes_(maps.splits + 4 * words_for(parts.halving_count)), top_(top),
           splits_(array<AcdfTopSplit>(top->top)), tiles_(array<AcdfTopTile>(top->tiles)) {
         for (u32 code = 0; code < 1u << maps_.code_bits; ++code)
             share_[code] = acdf_halving_share(code, maps_.code_bits);
@@ -63,7 +59,7 @@ private:
     // The number of the node that is visited, which is a split or becomes a tile.
     u32 take(u32 node, u32 level) {
         if (tree_.is_split(node)) return first_[level]++;
-        tiles_[tile_count_] = tree_.tile(node, array<double>(top_->heights));
+        tiles_[tile_count_] = tree_.tile(node, heights_);
         return ACDF_TOP_TILE | tile_count_++;
     }
 
@@ -100,17 +96,17 @@ private:
     }
 
     u32 code_of(u32 map, u32 rank) const {
-        const auto* codes = parts_.map_splits + 4 * words_for(parts_.halving_count);
         const u64 at = (u64{map} * maps_.split_count + rank) * maps_.code_bits;
         const u64 word = at / 32, end = words_for(u64{maps_.map_count} * maps_.split_count * maps_.code_bits);
-        u64 held = load_u32(codes + 4 * word);
-        if (word + 1 < end) held |= u64{load_u32(codes + 4 * word + 4)} << 32;
+        u64 held = load_u32(codes_ + 4 * word);
+        if (word + 1 < end) held |= u64{load_u32(codes_ + 4 * word + 4)} << 32;
         return static_cast<u32>(held >> at % 32) & ((1u << maps_.code_bits) - 1);
     }
 
-    const Parts& parts_;
     TopTree tree_;
     const AcdfMapsHeader& maps_;
+    const double* heights_;
+    const u8* codes_;
     AcdfTop* top_;
     AcdfTopSplit* splits_;
     AcdfTopTile* tiles_;
@@ -119,19 +115,19 @@ private:
     u32 share_[1u << ACDF_MOST_CODE_BITS];
 };
 
-AcdfTop* make_top(const Parts& parts, bool lookup, const AcdfAllocator& allocator, AcdfBlock& block) {
-    const bool latlong = parts.description->parameterization == ACDF_PARAM_LATLONG;
-    const TopLayout layout(parts, latlong, lookup);
+} // namespace
+
+AcdfTop* make_top(const Parts& parts, const Maps& maps, const double* heights, const AcdfAllocator& allocator,
+                  AcdfBlock& block) noexcept {
+    const TopLayout layout(parts, *maps.header);
     if (layout.words > 0xFFFFFFFFu || layout.words > SIZE_MAX / 4) return nullptr;
     block = take_block(allocator, static_cast<std::size_t>(4 * layout.words));
     if (!block.data) return nullptr;
     auto* top = static_cast<AcdfTop*>(block.data);
     *top = {};
     top->words = static_cast<u32>(layout.words);
-    top->maps = parts.maps->map_count;
-    top->splits = parts.maps->split_count;
-    top->nodes = static_cast<u32>(layout.nodes);
-    top->heights = latlong ? static_cast<u32>(layout.heights) : 0;
+    top->maps = maps.header->map_count;
+    top->splits = maps.header->split_count;
     top->top = static_cast<u32>(layout.top);
     top->tiles = static_cast<u32>(layout.tiles);
     top->lower = static_cast<u32>(layout.lower);
@@ -140,33 +136,8 @@ AcdfTop* make_top(const Parts& parts, bool lookup, const AcdfAllocator& allocato
     top->starts = static_cast<u32>(layout.starts);
     for (u32 axis = 0; axis < 2; ++axis)
         top->position_scale[axis] = static_cast<u32>(position_scale(parts.axes[axis].resolution, layout.bits));
-    u32* words = static_cast<u32*>(block.data);
-    if (parts.halving_count)
-        std::memcpy(words + top->nodes, parts.halvings, parts.halving_count * sizeof(AcdfHalving));
-    const u32 rows = parts.axes[ACDF_AXIS_THETA].resolution;
-    if (latlong)
-        for (u32 row = 0; row <= rows; ++row)
-            reinterpret_cast<double*>(words + top->heights)[row] = acdf_row_z(row, rows);
-    TopMaker(parts, top).run();
+    TopMaker(parts, maps, heights, top).run();
     return top;
-}
-
-} // namespace
-
-AcdfIndexed make_indexed(const Parts& parts, bool lookup, const AcdfAllocator& allocator,
-                         AcdfBlock& block) noexcept {
-    AcdfIndexed out = {};
-    out.columns = parts.axes[ACDF_AXIS_PHI].resolution;
-    out.rows = parts.axes[ACDF_AXIS_THETA].resolution;
-    out.parameterization = parts.description->parameterization;
-    out.axes = parts.description->axis_count - 2;
-    for (u32 axis = 0; axis < out.axes; ++axis) out.counts[axis] = parts.axes[2 + axis].resolution;
-    out.sun = parts.maps->sun;
-    out.total = parts.description->total;
-    out.coordinates = parts.coordinates;
-    out.maps = parts.of_map;
-    out.top = make_top(parts, lookup, allocator, block);
-    return out;
 }
 
 } // namespace acdf

@@ -1,8 +1,8 @@
 // The frozen files of several maps of every version (format/make_golden.cpp makes those of the present one).
 #include "tests/lib/reader/golden_numbers.h"
 
+#include <acdf/indexed/views.h>
 #include <acdf/reader.h>
-#include <acdf/views.h>
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,16 @@ namespace {
 
 class GoldenIndexed : public acdf_test::GoldenSamples {
 protected:
-    acdf::MixedEnvironment at(const acdf_test::GoldenSample& line) const {
-        return file_.indexed().at(double{line.given[0]}, double{line.given[1]}, double{line.given[2]});
+    void SetUp() override {
+        GoldenSamples::SetUp();
+        const acdf::Status status = acdf::IndexedEnvironment::open(file_, maps_);
+        ASSERT_TRUE(status.ok()) << status.message;
     }
+    acdf::MixedEnvironment at(const acdf_test::GoldenSample& line) const {
+        return maps_.at(double{line.given[0]}, double{line.given[1]}, double{line.given[2]});
+    }
+
+    acdf::IndexedEnvironment maps_;
 };
 
 TEST_P(GoldenIndexed, SamplesTheSameSamples) {

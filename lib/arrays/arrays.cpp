@@ -1,35 +1,23 @@
-// Samples and pdfs as symbols: loops over the inline functions. Single calls are arrays of one, so that the code is
-// there once.
-#include "opened_file.h"
+// Samples and pdfs as symbols: the inline functions, loops over them, and batches where those are built.
+#include "reader/opened_file.h"
 
-#include <cmath>
+#include <acdf/arrays/arrays.h>
+#if ACDF_BATCH
+#include <acdf/batch/batch.h>
+#endif
+#include <acdf/views.h>
+
 #include <cstring>
 #include <limits>
 
 namespace {
 
-using DirectionSample = AcdfDirectionSample;
-
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 // A direction that was sampled, if any.
-float keep(const DirectionSample& sample, float direction[3]) {
+float keep(const AcdfDirectionSample& sample, float direction[3]) {
     if (sample.pdf > 0.0f) std::memcpy(direction, sample.direction, sizeof sample.direction);
     return sample.pdf;
-}
-
-// The first sample of an array, if any: call(u, direction, pdf).
-template <class Call>
-float keep_first(double u0, double u1, float direction[3], const Call& call) {
-    const double u[2] = {u0, u1};
-    DirectionSample sample = {};
-    call(u, sample.direction, &sample.pdf);
-    return keep(sample, direction);
-}
-
-void put(const DirectionSample& sample, std::size_t i, float* directions, float* pdfs) {
-    std::memcpy(directions + 3 * i, sample.direction, sizeof sample.direction);
-    pdfs[i] = sample.pdf;
 }
 
 // Calls serve(j, i) for each of `count` items i, of the condition j that serves it.
@@ -39,17 +27,6 @@ void for_each_item(std::size_t count, std::size_t each, Serve&& serve) {
         for (const std::size_t end = each < count - i ? i + each : count; i < end; ++i) serve(j, i);
 }
 
-// Calls serve(point, i) for each of `count` items i; a point is looked up once for all that it serves.
-template <class Serve>
-void for_each_point(const AcdfLocal& local, const float* normals, std::size_t each, std::size_t count,
-                    Serve&& serve) {
-    AcdfLocalPoint point;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (i % each == 0) acdf_local_at(&local, normals + 3 * (i / each), &point);
-        serve(point, i);
-    }
-}
-
 // Whether a file can serve arrays of this kind, with `each` items a condition: 0 would never come to an end.
 bool serves(const AcdfFile* file, AcdfKind kind, size_t each) { return file->kind() == kind && each > 0; }
 
@@ -57,31 +34,82 @@ void put_numbers(bool found, int axes, double* u) {
     for (int axis = 0; axis < axes && !found; ++axis) u[axis] = kNoNumber;
 }
 
-} // namespace
+#if ACDF_BATCH
+using acdf::pdf_batch;
+using acdf::sample_batch;
+#else
+// The functions of acdf/batch/batch.h as loops.
 
-float acdf_sample_environment(const AcdfFile* file, double u0, double u1, float direction[3]) {
-    return keep_first(u0, u1, direction, [file](const double* u, float* out, float* pdf) {
-        acdf_sample_environment_array(file, u, 1, out, pdf);
+void put(const AcdfDirectionSample& sample, float direction[3], float& pdf) {
+    std::memcpy(direction, sample.direction, sizeof sample.direction);
+    pdf = sample.pdf;
+}
+
+void sample_batch(const acdf::EnvironmentView& view, const double (*u)[2], std::size_t count,
+                  float (*directions)[3], float* pdfs) {
+    for (std::size_t i = 0; i < count; ++i) put(view.sample(u[i][0], u[i][1]), directions[i], pdfs[i]);
+}
+
+void pdf_batch(const acdf::EnvironmentView& view, const float (*directions)[3], std::size_t count, float* pdfs) {
+    for (std::size_t i = 0; i < count; ++i) pdfs[i] = view.pdf(directions[i]);
+}
+
+void sample_batch(const acdf::LocalEnvironmentView& view, const float (*normals)[3], std::size_t each,
+                  const double (*u)[2], std::size_t count, float (*directions)[3], float* pdfs) {
+    AcdfLocalPoint point; // looked up once for all that it serves
+    for_each_item(count, each, [&](std::size_t j, std::size_t i) {
+        if (i % each == 0) point = view.at(normals[j]);
+        put(view.sample(point, u[i][0], u[i][1]), directions[i], pdfs[i]);
     });
 }
 
+void pdf_batch(const acdf::LocalEnvironmentView& view, const float (*normals)[3], std::size_t each,
+               const float (*directions)[3], std::size_t count, float* pdfs) {
+    AcdfLocalPoint point;
+    for_each_item(count, each, [&](std::size_t j, std::size_t i) {
+        if (i % each == 0) point = view.at(normals[j]);
+        pdfs[i] = view.pdf(point, directions[i]);
+    });
+}
+
+void sample_batch(const acdf::BrdfView& view, const float (*wo)[3], std::size_t each, const double (*u)[2],
+                  std::size_t count, float (*wi)[3], float* pdfs) {
+    for_each_item(count, each,
+                  [&](std::size_t j, std::size_t i) { put(view.sample(wo[j], u[i][0], u[i][1]), wi[i], pdfs[i]); });
+}
+
+void pdf_batch(const acdf::BrdfView& view, const float (*wo)[3], std::size_t each, const float (*wi)[3],
+               std::size_t count, float* pdfs) {
+    for_each_item(count, each, [&](std::size_t j, std::size_t i) { pdfs[i] = view.pdf(wo[j], wi[i]); });
+}
+#endif
+
+// Arrays of pairs of numbers and of vectors, as those have them.
+const double (*pairs(const double* array))[2] { return reinterpret_cast<const double(*)[2]>(array); }
+const float (*vectors(const float* array))[3] { return reinterpret_cast<const float(*)[3]>(array); }
+float (*vectors(float* array))[3] { return reinterpret_cast<float(*)[3]>(array); }
+
+} // namespace
+
+float acdf_sample_environment(const AcdfFile* file, double u0, double u1, float direction[3]) {
+    if (file->kind() != ACDF_KIND_ENVIRONMENT) return 0.0f;
+    return keep(acdf_environment_sample(&file->environment, u0, u1), direction);
+}
+
 float acdf_pdf_environment(const AcdfFile* file, const float direction[3]) {
-    float pdf = 0.0f;
-    acdf_pdf_environment_array(file, direction, 1, &pdf);
-    return pdf;
+    return file->kind() == ACDF_KIND_ENVIRONMENT ? acdf_environment_pdf(&file->environment, direction) : 0.0f;
 }
 
 int acdf_sample_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
                                   float* pdfs) {
     if (file->kind() != ACDF_KIND_ENVIRONMENT) return 0;
-    for (size_t i = 0; i < count; ++i)
-        put(acdf_environment_sample(&file->environment, u[2 * i], u[2 * i + 1]), i, directions, pdfs);
+    sample_batch(acdf::EnvironmentView(file->environment), pairs(u), count, vectors(directions), pdfs);
     return 1;
 }
 
 int acdf_pdf_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs) {
     if (file->kind() != ACDF_KIND_ENVIRONMENT) return 0;
-    for (size_t i = 0; i < count; ++i) pdfs[i] = acdf_environment_pdf(&file->environment, directions + 3 * i);
+    pdf_batch(acdf::EnvironmentView(file->environment), vectors(directions), count, pdfs);
     return 1;
 }
 
@@ -104,18 +132,15 @@ float acdf_pdf_local(const AcdfFile* file, const float normal[3], const float di
 int acdf_sample_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
                             float* directions, float* pdfs) {
     if (!serves(file, ACDF_KIND_LOCAL, each)) return 0;
-    for_each_point(file->local, normals, each, count, [&](const AcdfLocalPoint& point, size_t i) {
-        put(acdf_local_sample_at(&file->local, &point, u[2 * i], u[2 * i + 1]), i, directions, pdfs);
-    });
+    sample_batch(acdf::LocalEnvironmentView(file->local), vectors(normals), each, pairs(u), count,
+                 vectors(directions), pdfs);
     return 1;
 }
 
 int acdf_pdf_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
                          size_t count, float* pdfs) {
     if (!serves(file, ACDF_KIND_LOCAL, each)) return 0;
-    for_each_point(file->local, normals, each, count, [&](const AcdfLocalPoint& point, size_t i) {
-        pdfs[i] = acdf_local_pdf_at(&file->local, &point, directions + 3 * i);
-    });
+    pdf_batch(acdf::LocalEnvironmentView(file->local), vectors(normals), each, vectors(directions), count, pdfs);
     return 1;
 }
 
@@ -126,31 +151,24 @@ int acdf_irradiance_local_array(const AcdfFile* file, const float* normals, size
 }
 
 float acdf_sample_brdf(const AcdfFile* file, const float wo[3], double u0, double u1, float wi[3]) {
-    return keep_first(u0, u1, wi, [file, wo](const double* u, float* out, float* pdf) {
-        acdf_sample_brdf_array(file, wo, 1, u, 1, out, pdf);
-    });
+    return file->kind() == ACDF_KIND_BRDF ? keep(acdf_brdf_sample(&file->brdf, wo, u0, u1), wi) : 0.0f;
 }
 
 float acdf_pdf_brdf(const AcdfFile* file, const float wo[3], const float wi[3]) {
-    float pdf = 0.0f;
-    acdf_pdf_brdf_array(file, wo, 1, wi, 1, &pdf);
-    return pdf;
+    return file->kind() == ACDF_KIND_BRDF ? acdf_brdf_pdf(&file->brdf, wo, wi) : 0.0f;
 }
 
 int acdf_sample_brdf_array(const AcdfFile* file, const float* wo, size_t each, const double* u, size_t count,
                            float* wi, float* pdfs) {
     if (!serves(file, ACDF_KIND_BRDF, each)) return 0;
-    for_each_item(count, each, [&](size_t j, size_t i) {
-        put(acdf_brdf_sample(&file->brdf, wo + 3 * j, u[2 * i], u[2 * i + 1]), i, wi, pdfs);
-    });
+    sample_batch(acdf::BrdfView(file->brdf), vectors(wo), each, pairs(u), count, vectors(wi), pdfs);
     return 1;
 }
 
 int acdf_pdf_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
                         float* pdfs) {
     if (!serves(file, ACDF_KIND_BRDF, each)) return 0;
-    for_each_item(count, each,
-                  [&](size_t j, size_t i) { pdfs[i] = acdf_brdf_pdf(&file->brdf, wo + 3 * j, wi + 3 * i); });
+    pdf_batch(acdf::BrdfView(file->brdf), vectors(wo), each, vectors(wi), count, pdfs);
     return 1;
 }
 

@@ -1,21 +1,18 @@
-// The symbols of acdf/linked.h give what the inline functions give, and nothing for files of other kinds.
+// The symbols of acdf/arrays/arrays.h give what the inline functions give, and nothing for files of other kinds.
 #include <acdf/acdf.h>
+#include <acdf/arrays/arrays.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
-namespace linked_test {
+namespace arrays_test {
 namespace {
 
 using Handle = std::unique_ptr<AcdfFile, decltype(&acdf_close)>;
@@ -56,8 +53,9 @@ void expect_same(const acdf::DirectionSample& sample, const float* direction, fl
     EXPECT_EQ(sample.pdf, pdf) << i;
 }
 
-TEST(Linked, environments) {
-    Both both(golden("zlib"));
+void expect_environment_arrays(const char* name) {
+    SCOPED_TRACE(name);
+    Both both(golden(name));
     const acdf::EnvironmentView sky = both.file.environment();
     const AcdfFile* file = both.handle.get();
     ASSERT_EQ(acdf_sample_environment_array(file, both.u.data(), kCount, both.w.data(), both.p.data()), 1);
@@ -84,9 +82,14 @@ TEST(Linked, environments) {
     }
 }
 
+TEST(Arrays, environments) {
+    for (const char* name : {"halvings", "halvings_octahedral", "zlib"}) expect_environment_arrays(name);
+}
+
 // Several samples a normal, and one.
-void expect_local_arrays(std::size_t each) {
-    Both both(golden("local"));
+void expect_local_arrays(const char* name, std::size_t each) {
+    SCOPED_TRACE(name);
+    Both both(golden(name));
     const acdf::LocalEnvironmentView sky = both.file.local();
     const AcdfFile* file = both.handle.get();
     const std::vector<float> normals = Both::directions(kCount / each + 1, -1.0);
@@ -111,11 +114,15 @@ void expect_local_arrays(std::size_t each) {
     }
 }
 
-TEST(Linked, localEnvironmentsServeSeveralSamplesANormal) { expect_local_arrays(kEach); }
-TEST(Linked, localEnvironmentsServeANormalASample) { expect_local_arrays(1); }
+TEST(Arrays, localEnvironmentsServeSeveralSamplesANormal) {
+    for (const char* name : {"local", "local_grid"}) expect_local_arrays(name, kEach);
+}
+TEST(Arrays, localEnvironmentsServeANormalASample) {
+    for (const char* name : {"local", "local_grid"}) expect_local_arrays(name, 1);
+}
 
-TEST(Linked, brdfs) {
-    for (const char* name : {"brdf", "brdf_anisotropic"}) {
+TEST(Arrays, brdfs) {
+    for (const char* name : {"brdf", "brdf_anisotropic", "brdf_floor", "brdf_mirrored", "brdf_separate"}) {
         Both both(golden(name));
         const acdf::BrdfView brdf = both.file.brdf();
         const AcdfFile* file = both.handle.get();
@@ -143,7 +150,7 @@ TEST(Linked, brdfs) {
     }
 }
 
-TEST(Linked, tables) {
+TEST(Arrays, tables) {
     Both both(std::string(ACDF_TEST_DIR "/../format/vectors/table.acdf"));
     const acdf::TableView table = both.file.table();
     const AcdfFile* file = both.handle.get();
@@ -179,7 +186,7 @@ TEST(Linked, tables) {
     EXPECT_GT(drawn, kCount / 2);
 }
 
-TEST(Linked, otherKindsAreRefused) {
+TEST(Arrays, otherKindsAreRefused) {
     const Both sky(golden("zlib")), brdf(golden("brdf"));
     float w[3] = {0.0f, 0.0f, 1.0f}, p = -7.0f;
     double u[2] = {0.5, 0.5}, x[2] = {-7.0, -7.0};
@@ -210,7 +217,7 @@ TEST(Linked, otherKindsAreRefused) {
     EXPECT_EQ(acdf_table_sampled_axes(e), 0u);
 }
 
-TEST(Linked, noItemsAConditionAreRefused) {
+TEST(Arrays, noItemsAConditionAreRefused) {
     const Both light(golden("local")), brdf(golden("brdf")),
         table(std::string(ACDF_TEST_DIR "/../format/vectors/table.acdf"));
     const std::vector<float> up = {0.0f, 0.0f, 1.0f};
@@ -232,7 +239,7 @@ TEST(Linked, noItemsAConditionAreRefused) {
     EXPECT_EQ(x, std::vector<double>(24, -7.0));
 }
 
-TEST(Linked, anIndexThatIsMissingIsRefused) {
+TEST(Arrays, anIndexThatIsMissingIsRefused) {
     const Both table(std::string(ACDF_TEST_DIR "/../format/vectors/table.acdf"));
     const AcdfFile* const t = table.handle.get();
     ASSERT_GT(acdf_table_indexed_axes(t), 0u);
@@ -246,130 +253,5 @@ TEST(Linked, anIndexThatIsMissingIsRefused) {
     EXPECT_EQ(p, -7.0);
 }
 
-// ---- memory and alignment ----
-
-/// Counts what is out; `left` calls succeed.
-struct Ledger {
-    std::map<void*, std::size_t> out;
-    int left = 1000, wrong = 0;
-
-    AcdfAllocator allocator() {
-        return {[](void* self, size_t bytes, size_t alignment) -> void* {
-                    auto& ledger = *static_cast<Ledger*>(self);
-                    if (ledger.left-- <= 0) return nullptr;
-                    if (alignment > 64 || bytes % alignment != 0) ++ledger.wrong;
-                    void* block = std::aligned_alloc(alignment, bytes);
-                    ledger.out[block] = bytes;
-                    return block;
-                },
-                [](void* self, void* block, size_t bytes) {
-                    auto& ledger = *static_cast<Ledger*>(self);
-                    const auto found = ledger.out.find(block);
-                    if (found == ledger.out.end() || found->second != bytes) ++ledger.wrong;
-                    else ledger.out.erase(found);
-                    std::free(block);
-                },
-                this};
-    }
-};
-
-TEST(Memory, ofTheCallersAllocatorAndBackToIt) {
-    for (const char* name : {"zlib", "local", "planes", "brdf"}) {
-        Ledger ledger;
-        AcdfLoadOptions options = {};
-        options.allocator = ledger.allocator();
-        AcdfError error;
-        AcdfFile* file = acdf_open_with(golden(name).c_str(), &options, &error);
-        ASSERT_TRUE(file) << error.message;
-        EXPECT_GE(ledger.out.size(), 2u) << "the bytes, and the handle";
-        EXPECT_GE(ledger.out.count(file), 1u);
-        std::size_t bytes = 0;
-        for (const auto& [block, size] : ledger.out) bytes += size;
-        EXPECT_GE(bytes, acdf_size(file) + acdf_table_bytes(file));
-        acdf_close(file);
-        EXPECT_TRUE(ledger.out.empty()) << name;
-        EXPECT_EQ(ledger.wrong, 0);
-    }
-}
-
-TEST(Memory, noOptionsAreTheDefault) {
-    AcdfError error;
-    const Handle opened(acdf_open_with(golden("zlib").c_str(), nullptr, &error), acdf_close);
-    ASSERT_TRUE(opened) << error.message;
-    const Handle loaded(acdf_from_memory_with(acdf_header(opened.get()), acdf_size(opened.get()), nullptr, &error),
-                        acdf_close);
-    ASSERT_TRUE(loaded) << error.message;
-    EXPECT_EQ(acdf_table_bytes(opened.get()), acdf_table_bytes(loaded.get()));
-    EXPECT_EQ(acdf_from_memory(nullptr, 100, &error), nullptr);
-    EXPECT_EQ(error.code, ACDF_MALFORMED);
-}
-
-TEST(Memory, thatIsNeverReleasedIsTheCallersToFree) {
-    Ledger ledger;
-    AcdfLoadOptions options = {};
-    options.allocator = ledger.allocator();
-    options.allocator.release = nullptr;
-    acdf_close(acdf_open_with(golden("zlib").c_str(), &options, nullptr));
-    EXPECT_GE(ledger.out.size(), 2u);
-    for (const auto& [block, size] : ledger.out) std::free(block);
-}
-
-TEST(Memory, thatEndsIsAnErrorAndNotALeak) {
-    int opened = 0;
-    for (int left = 0; left < 6; ++left) {
-        Ledger ledger;
-        ledger.left = left;
-        acdf::LoadOptions options;
-        options.allocator = ledger.allocator();
-        acdf::File file;
-        const acdf::Status status = acdf::File::open(golden("zlib").c_str(), file, options);
-        if (left < 2) EXPECT_EQ(status.code, ACDF_OUT_OF_MEMORY) << left; // bytes; inflated chunks
-        else ++opened;                                                    // tables are only for speed
-        file = acdf::File();
-        EXPECT_TRUE(ledger.out.empty()) << left;
-        AcdfLoadOptions c_options = {};
-        ledger.left = left;
-        c_options.allocator = ledger.allocator();
-        acdf_close(acdf_open_with(golden("zlib").c_str(), &c_options, nullptr));
-        EXPECT_TRUE(ledger.out.empty()) << left;
-    }
-    EXPECT_EQ(opened, 4);
-}
-
-TEST(Memory, bothInterfacesUseBytesInPlaceAtTheSameAlignment) {
-    std::ifstream in(golden("smallest"), std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
-    alignas(64) static unsigned char room[1 << 16];
-    ASSERT_LT(bytes.size() + 64, sizeof room);
-    for (std::size_t shift = 0; shift < 64; ++shift) {
-        const unsigned char* data = room + shift;
-        std::memcpy(room + shift, bytes.data(), bytes.size());
-        acdf::File file;
-        ASSERT_TRUE(acdf::File::from_memory(data, bytes.size(), file).ok());
-        const Handle handle(acdf_from_memory(data, bytes.size(), nullptr), acdf_close);
-        ASSERT_TRUE(handle);
-        const bool in_place = shift % 8 == 0;
-        EXPECT_EQ(static_cast<const void*>(&file.header()) == data, in_place) << shift;
-        EXPECT_EQ(static_cast<const void*>(acdf_header(handle.get())) == data, in_place) << shift;
-    }
-}
-
-TEST(Views, canBeMembers) {
-    struct Light {
-        acdf::EnvironmentView sky;
-        acdf::LocalEnvironmentView local;
-        acdf::BrdfView brdf;
-        acdf::TableView table;
-    } light;
-    EXPECT_TRUE(light.sky.empty() && light.local.empty() && light.brdf.empty() && light.table.empty());
-    EXPECT_EQ(light.sky.total(), 0.0);
-    Both sky(golden("smallest")), local(golden("local")), brdf(golden("brdf"));
-    light.sky = sky.file.environment();
-    light.local = local.file.local();
-    light.brdf = brdf.file.brdf();
-    EXPECT_FALSE(light.sky.empty() || light.local.empty() || light.brdf.empty());
-    EXPECT_GT(light.sky.sample(0.5, 0.5).pdf, 0.0f);
-}
-
 } // namespace
-} // namespace linked_test
+} // namespace arrays_test

@@ -1,0 +1,23 @@
+#include "tools/cli/validation.h"
+
+#include "indexed/check.h"
+
+namespace acdf::tools {
+
+Verdict validate_all(const std::vector<std::uint8_t>& bytes, const std::function<bool(const Finding&)>& take) {
+    auto* const context = const_cast<void*>(static_cast<const void*>(&take));
+    const FindingSink sink = [](const Finding& finding, void* taker) -> bool {
+        return (*static_cast<const std::function<bool(const Finding&)>*>(taker))(finding);
+    };
+    Verdict verdict = validate(bytes.data(), bytes.size(), sink, context);
+    File file;
+    if (!verdict.valid() || !File::from_memory(bytes.data(), bytes.size(), file).ok()) return verdict;
+    if (file.kind() == ACDF_KIND_INDEXED) {
+        const Verdict maps = validate_maps(file, sink, context);
+        verdict.errors += maps.errors;
+        verdict.warnings += maps.warnings;
+    }
+    return verdict;
+}
+
+} // namespace acdf::tools
