@@ -1,4 +1,5 @@
-/* An .acdf file, opened and checked: what a file says of itself. No view of it is here (acdf/acdf.h, acdf/reader.h).
+/* An .acdf file, opened and checked: what a file says of itself. No view of it is here (acdf/acdf.h,
+ * acdf/reader.h).
  *
  * The safety contract is that of acdf/reader.h: any bytes may be passed in; a file that was accepted can be
  * sampled for ever without reading outside it. An open file is never changed: any number of threads may use
@@ -54,7 +55,7 @@ typedef struct AcdfLoadOptions {
     uint64_t max_file_bytes;     /* 0: 4 GiB */
     uint64_t max_inflated_bytes; /* of compressed chunks together; 0: 1 GiB */
     int plain; /* 1: without runtime tables: nothing is allocated for them, each call descends from the root */
-    AcdfAllocator allocator;     /* of what the open file keeps, itself too; all null: the C library's */
+    AcdfAllocator allocator; /* of what the open file keeps, itself too; all null: the C library's */
 } AcdfLoadOptions;
 AcdfFile* acdf_open_with(const char* path, const AcdfLoadOptions* options, AcdfError* error);
 AcdfFile* acdf_from_memory_with(const void* data, size_t size, const AcdfLoadOptions* options, AcdfError* error);

@@ -96,7 +96,7 @@ TEST(Memory, thatEndsIsAnErrorAndNotALeak) {
         acdf::File file;
         const acdf::Status status = acdf::File::open(golden("zlib").c_str(), file, options);
         if (left < 2) EXPECT_EQ(status.code, ACDF_OUT_OF_MEMORY) << left; // bytes; inflated chunks
-        else ++opened;                                                                // tables are only for speed
+        else ++opened;                                                    // tables are only for speed
         file = acdf::File();
         EXPECT_TRUE(ledger.out.empty()) << left;
         AcdfLoadOptions c_options = {};
