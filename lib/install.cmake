@@ -1,4 +1,4 @@
-# Installs the reader, the rooms beside it and the builder, components `reader`, `batch`, `product`, `shader` and `builder`: headers
+# Installs the reader, the rooms beside it and the builder, components `reader`, `visibility`, `batch`, `product`, `shader` and `builder`: headers
 # and a static library each, one CMake package and a pkg-config file each. All need the first. As shared libraries, one of the reader
 # with the rooms and one of the builder: `runtime`, and what links to them, `shared`.
 # The program: `tools`, its pages and completions `manual`. The Python package: `python`.
@@ -59,9 +59,11 @@ install(FILES ${PROJECT_BINARY_DIR}/acdf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/
 set(ACDF_PC_SUMMARY_batch "many calls at once")
 set(ACDF_PC_SUMMARY_product "light, cosine and BRDF at once")
 set(ACDF_PC_SUMMARY_shader "tables for shaders")
+set(ACDF_PC_SUMMARY_visibility "light as positions see it")
 set(ACDF_PC_NEEDS_batch "acdf, libhwy")
-set(ACDF_PC_NEEDS_product acdf)
+set(ACDF_PC_NEEDS_product acdf-visibility)
 set(ACDF_PC_NEEDS_shader acdf)
+set(ACDF_PC_NEEDS_visibility acdf)
 foreach(room IN LISTS ACDF_ROOMS)
     set(ACDF_PC_ROOM ${room})
     set(ACDF_PC_SUMMARY ${ACDF_PC_SUMMARY_${room}})

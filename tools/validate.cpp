@@ -7,6 +7,7 @@
 #include "tools/commands.h"
 
 #include "reader/check/check.h"
+#include "visibility/check.h"
 
 #include <nlohmann/json.hpp>
 
@@ -41,9 +42,15 @@ const char* severity_name(Severity severity) { return severity == Severity::erro
 Report validate_file(const std::string& path) {
     Report report{path, {}, {}};
     const std::vector<std::uint8_t> bytes = read_acdf_bytes(path);
-    report.verdict = validate(bytes.data(), bytes.size(), [&](const Finding& finding) {
+    const auto note = [&](const Finding& finding) {
         report.faults.push_back({finding.rule, finding.offset, finding.detail});
-    });
+    };
+    report.verdict = validate(bytes.data(), bytes.size(), note);
+    File file;
+    if (!report.verdict.valid() || !File::from_memory(bytes.data(), bytes.size(), file).ok()) return report;
+    const Verdict seen = validate_visibility(*file.handle(), note);
+    report.verdict.errors += seen.errors;
+    report.verdict.warnings += seen.warnings;
     return report;
 }
 

@@ -5,6 +5,7 @@
 #include "tools/commands.h"
 
 #include <acdf/layout.h>
+#include <acdf/visibility/visibility.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -78,10 +79,21 @@ std::vector<std::uint8_t> read_acdf_bytes(const std::string& path) {
     return read_while(path, Limits().max_file_bytes, has_magic);
 }
 
+namespace {
+
+/// As File::from_memory, and checks what rooms beside the reader read of the file.
+Status open_bytes(const std::uint8_t* data, std::size_t size, File& file) {
+    VisibleLocalView view;
+    const Status status = File::from_memory(data, size, file);
+    return status.ok() && file.kind() == ACDF_KIND_LOCAL ? VisibleLocalView::of(file, view) : status;
+}
+
+} // namespace
+
 LoadedFile load_file(const std::string& path) {
     LoadedFile loaded;
     loaded.bytes = read_acdf_bytes(path);
-    const Status status = File::from_memory(loaded.bytes.data(), loaded.bytes.size(), loaded.file);
+    const Status status = open_bytes(loaded.bytes.data(), loaded.bytes.size(), loaded.file);
     if (status.ok()) return loaded;
     std::string text = shown(path) + ": " + status.message;
     if (status.code == ErrorCode::malformed) text += "; `acdf validate` lists every fault";
@@ -90,7 +102,7 @@ LoadedFile load_file(const std::string& path) {
 
 void check_reads_back(const std::uint8_t* data, std::size_t size) {
     File file;
-    if (const Status status = File::from_memory(data, size, file); !status.ok())
+    if (const Status status = open_bytes(data, size, file); !status.ok())
         throw Failure(std::string("cannot read back what was written: ") + status.message);
 }
 

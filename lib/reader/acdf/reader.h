@@ -110,6 +110,8 @@ public:
     /// Whether no file was loaded: then only this may be asked.
     bool empty() const noexcept { return opened_ == nullptr; }
     // Everything below asks for a file that is not empty.
+    /// The same file for functions that take one of the C interface (acdf/acdf.h); valid while this is not changed.
+    const AcdfFile* handle() const noexcept { return opened_; }
     /// Kind, and the parts of the file as they lie in it; axis i < axis_count. A tree of halvings has no bins.
     AcdfKind kind() const noexcept;
     const AcdfHeader& header() const noexcept;

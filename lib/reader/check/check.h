@@ -8,9 +8,6 @@
 
 #include <acdf/halvings.h>
 #include <acdf/reader.h>
-#ifndef ACDF_ENVIRONMENT_ONLY
-#include <acdf/portals.h>
-#endif
 
 #include <cstring>
 #include <type_traits>
@@ -120,7 +117,6 @@ struct Parts {
     const AcdfViews* views = nullptr;           ///< of a BRDF
     const float* nodes = nullptr;               ///< views->theta_count
     const AcdfLocalHeader* local = nullptr;     ///< of local environments
-    AcdfVisibilityTable visibility = {};        ///< of local environments; its header is null where absent
     const AcdfMapsHeader* maps = nullptr;       ///< of an indexed environment
     const double* coordinates = nullptr;        ///< of its maps
     const AcdfMap* of_map = nullptr;            ///< maps->map_count
@@ -128,7 +124,6 @@ struct Parts {
     const AcdfNormalsHeader* normals = nullptr; ///< of a local environment on one tree of halvings
     const u8* normal_splits = nullptr;          ///< a bit for each halving; then the codes of each row,
     u64 normals_size = 0;                       ///< of so many bytes
-    AcdfPortalTable portals = {};               ///< beside visibility cells; its header is null where absent
 #endif
 };
 
