@@ -1,7 +1,7 @@
 // For every rule of visibility cells and portals a file that breaks it and no other.
 #include "reader/check/rule_codes.h"
-#include "tests/lib/reader/check/cases.h"
 #include "tests/lib/reader/normals_builder.h"
+#include "tests/lib/visibility/cases.h"
 #include "tests/lib/visibility/load.h"
 
 #include <acdf/visibility/visibility_c.h>

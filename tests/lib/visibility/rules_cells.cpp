@@ -1,6 +1,6 @@
 // Files with visibility cells that break one rule each.
-#include "tests/lib/reader/check/cases.h"
 #include "tests/lib/reader/normals_builder.h"
+#include "tests/lib/visibility/cases.h"
 #include "tests/lib/visibility/load.h"
 
 #include <gtest/gtest.h>
