@@ -1,5 +1,7 @@
 #include "golden_samples.h"
 
+#include "visibility/visible_view.h"
+
 #include <acdf/indexed/views.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -51,7 +53,7 @@ std::string local_samples(const acdf::LocalEnvironmentView& view) {
 constexpr float kPositions[][3] = {{0, 1, 0},       {-1, 1, 1.5f},     {1.5f, 1, 1.5f},
                                    {0.2f, 1, 0.6f}, {0.6f, 2, 0.375f}, {5, 1, 0}};
 
-std::string visibility_samples(const acdf::LocalEnvironmentView& view) {
+std::string visibility_samples(const acdf::VisibleLocalView& view) {
     std::string text;
     for (const auto& x : kPositions)
         for (const auto& n : kNormals)
@@ -110,8 +112,10 @@ std::string golden_samples(const std::string& name, const std::vector<std::uint8
     walked.tables = false;
     const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, walked);
     if (!status.ok()) throw std::runtime_error(name + ": " + status.message);
-    if (file.kind() == ACDF_KIND_LOCAL && file.local().has_visibility()) return visibility_samples(file.local());
-    if (file.kind() == ACDF_KIND_LOCAL) return local_samples(file.local());
+    if (file.kind() == ACDF_KIND_LOCAL) {
+        const acdf::VisibleLocalView view = acdf::visible_view(file);
+        return view.has_cells() ? visibility_samples(view) : local_samples(file.local());
+    }
     if (file.kind() == ACDF_KIND_BRDF) return brdf_samples(file.brdf());
     if (file.kind() == ACDF_KIND_INDEXED) return indexed_samples(name, file);
     std::string text;

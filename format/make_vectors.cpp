@@ -3,6 +3,7 @@
 //
 //   make_vectors OUTDIR FILE.acdf...
 #include "compress/store/store.h"
+#include "visibility/visible_view.h"
 #include "write_file.h"
 
 #include <acdf/indexed/views.h>
@@ -136,14 +137,14 @@ const std::vector<std::vector<float>> kViews = {{0, 0, 1},        {0.6f, 0, 0.8f
                                                 {0, 0, -1},       {0.6f, 0, 0.6f}};
 
 /// As conditional_rows, of a local environment with visibility cells: a position comes before each normal.
-std::string visibility_rows(const acdf::LocalEnvironmentView& view) {
+std::string visibility_rows(const acdf::VisibleLocalView& view) {
     std::string text = "call,px,py,pz,nx,ny,nz,u0,u1,x,y,z,pdf\n";
     std::size_t offset = 0;
     const auto numbers = random_numbers(40);
     const auto all = directions(40);
     for (const auto& p : kPositions)
         for (const auto& n : kNormals) {
-            const AcdfLocalPoint point = view.at(p.data(), n.data());
+            const AcdfVisiblePoint point = view.at(p.data(), n.data());
             for (std::size_t i = 0; i < 4; ++i) {
                 const auto& [u0, u1] = numbers[(offset + i) % numbers.size()];
                 const Direction s = view.sample(point, u0, u1);
@@ -292,7 +293,7 @@ std::string table_rows(const acdf::TableView& view) {
 std::string rows_of(const acdf::File& file) {
     switch (file.kind()) {
     case ACDF_KIND_LOCAL:
-        if (file.local().has_visibility()) return visibility_rows(file.local());
+        if (const auto view = acdf::visible_view(file); view.has_cells()) return visibility_rows(view);
         return conditional_rows(file.local(), kNormals, "nx,ny,nz");
     case ACDF_KIND_BRDF:
         return conditional_rows(file.brdf(), kViews, "ox,oy,oz");

@@ -10,6 +10,7 @@
 #include "tools/cli/options.h"
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
+#include "visibility/visible_view.h"
 
 #include <nlohmann/json.hpp>
 
@@ -146,7 +147,8 @@ void add_metadata(const File& file, Json& report) {
 
 /// What a local environment has beside its trees.
 Json local_json(const File& file) {
-    const AcdfLocal local = file.local().data();
+    const AcdfVisibleLocal light = visible_view(file).data();
+    const AcdfLocal& local = light.local;
     std::uint64_t stored = 0;
     for (std::uint32_t i = 0; i < file.description().bin_count; ++i) stored += file.bin(i).root != ACDF_NO_ROOT;
     Json report;
@@ -157,13 +159,13 @@ Json local_json(const File& file) {
     report["tiles"] = rows ? rows->splits + 1 : 0;
     report["rows"] = rows ? rows->rows : 0;
     report["cosine_share"] = local.cosine_share;
-    if (const AcdfVisibility* visibility = local.visibility.header)
+    if (const AcdfVisibility* visibility = light.cells.header)
         report["visibility"] = {{"cells", visibility->split_count + 1},
                                 {"rows", visibility->row_count},
                                 {"columns", visibility->column_count},
                                 {"low", visibility->low},
                                 {"high", visibility->high}};
-    if (const AcdfPortals* portals = local.portals.header)
+    if (const AcdfPortals* portals = light.portals.header)
         report["portals"] = {{"count", portals->portal_count},
                              {"maps", portals->map_count},
                              {"cells", portals->size},

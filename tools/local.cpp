@@ -21,6 +21,7 @@
 #include "tools/cli/target_memory.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
+#include "visibility/visible_view.h"
 
 #include <CLI/CLI.hpp>
 
@@ -210,6 +211,7 @@ nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const 
     File file;
     File::from_memory(result.bytes.data(), result.bytes.size(), file);
     const AcdfNormalRows* const rows = file.local().data().rows_of_normals;
+    const AcdfVisibility* const cells = visible_view(file).data().cells.header;
     nlohmann::ordered_json out = {
         {"source", source},
         {"domain", build::parameterization_name(builder::grid_of(loaded.target).parameterization)},
@@ -217,7 +219,7 @@ nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const 
         {"bytes", result.bytes.size()},
         {"bins", file.description().bin_count},
         {"tiles", rows ? rows->splits + 1 : 0},
-        {"visibility", file.local().has_visibility() ? file.local().data().visibility.header->row_count : 0},
+        {"visibility", cells ? cells->row_count : 0},
         {"normals", result.normals},
         {"relative_variance", a.relative_variance},
         {"relative_variance_full_cdf", a.relative_variance_full_cdf},

@@ -3,6 +3,7 @@
 // for that of a renderer. Prints the relative variance of a light sample before and after, and writes a file that
 // serves the next frame, or a farm.
 #include <acdf/learn.h>
+#include <acdf/visibility/visibility.h>
 
 #include <cmath>
 #include <cstdio>
@@ -33,19 +34,20 @@ int main(int argc, char** argv) {
     std::uniform_real_distribution<double> u(0.0, 1.0);
     for (int pass = 0; pass < 2 && status.ok(); ++pass) {
         const auto file = learned.file(); // keeps the view valid
-        const acdf::LocalEnvironmentView sky = file->local();
+        acdf::VisibleLocalView sky;
+        acdf::VisibleLocalView::of(*file, sky);
         double sum = 0.0, squares = 0.0;
         const int count = 200000;
         for (int i = 0; i < count; ++i) { // in a renderer: all vertices, by all threads
             const float position[3] = {float(2.0 * u(random) - 1.0), float(2.0 * u(random) - 1.0), 0.0f};
             const float normal[3] = {0.0f, 0.0f, 1.0f};
-            const AcdfLocalPoint point = sky.at(position, normal);
+            const AcdfVisiblePoint point = sky.at(position, normal);
             const double u0 = u(random), u1 = u(random);
             const acdf::DirectionSample s = sky.sample(point, u0, u1);
             if (!(s.pdf > 0.0f && s.direction[2] > 0.0f)) continue;
             const bool visible = !occluded(position, s.direction);
             if (pass == 0) learned.add(position, normal, s.direction, visible);
-            const double light = sky.environment().pdf(s.direction); // a renderer looks its map up
+            const double light = sky.local().environment().pdf(s.direction); // a renderer looks its map up
             const double estimate = visible ? light * double(s.direction[2]) / double(s.pdf) : 0.0;
             sum += estimate / count;
             squares += estimate * estimate / count;

@@ -27,8 +27,6 @@ void make_local(const Parts& parts, AcdfFile& file) {
     local.partner = parts.partner;
     local.bins = parts.bins;
     local.cosine_share = static_cast<double>(parts.local->cosine_share);
-    local.visibility = parts.visibility;
-    local.portals = parts.portals;
     if (description.axis_count == 3) { // an octahedron's 4 n^2 + 2 corners
         while (4 * local.subdivisions * local.subdivisions + 2 < parts.axes[2].resolution) ++local.subdivisions;
     } else {

@@ -65,8 +65,8 @@ struct Counts {
 
 /// Of the pdf by which parts are sampled.
 template <class Point>
-double cut_integral(const AcdfLocal& light, const Point& point) {
-    const AcdfGrid grid = acdf_environment_grid(&light.environment);
+double cut_integral(const AcdfVisibleLocal& light, const Point& point) {
+    const AcdfGrid grid = acdf_environment_grid(&light.local.environment);
     const double middle[2] = {0.5, 0.5};
     double sum = 0.0;
     for (std::uint32_t y = 0; y < grid.rows; ++y)
@@ -82,7 +82,7 @@ double cut_integral(const AcdfLocal& light, const Point& point) {
 /// Whether a point's light is sampled by parts.
 template <class Point>
 bool has_parts(const Point& point) {
-    return point.light.what == ACDF_LOCAL_ROWS && point.cut.count > 0;
+    return point.light.local.what == ACDF_LOCAL_ROWS && point.cut.count > 0;
 }
 
 /// The light's grid: of each square that has light its middle.
@@ -189,7 +189,7 @@ Counts check(const AcdfLocal& light, const AnyLobe& lobe, int pairs) {
             random.direction(2.0 * random() - 1.0, any);
             out.violations += reflected(any) > 0.0 && !(sampler.pdf(point, any) > 0.0f);
             const bool first = random.bits() % 2 != 0; // what the light or the lobe alone sample
-            ProductSample t = first ? acdf_local_sample_at(&light, &point.light, random(), random())
+            ProductSample t = first ? acdf_local_sample_at(&light, &point.light.local, random(), random())
                                     : lobe.sample(point.lobe, random(), random());
             if (!(t.pdf > 0.0f)) continue;
             if (!first) {
@@ -209,7 +209,8 @@ Counts check(const AcdfLocal& light, const AnyLobe& lobe, int pairs) {
             out.beyond += is_beyond(again);
         }
         if (i < sums && has_parts(point))
-            out.worst_integral = std::max(out.worst_integral, std::fabs(cut_integral(light, point) - 1.0));
+            out.worst_integral =
+                std::max(out.worst_integral, std::fabs(cut_integral(acdf_visible_everywhere(&light), point) - 1.0));
     }
     return out;
 }

@@ -17,6 +17,7 @@
 #include "tools/render/portals.h"
 #include "tools/render/run.h"
 #include "tools/render/sampler_build.h"
+#include "visibility/visible_view.h"
 
 #include <acdf/builder.h>
 #include <acdf/reader.h>
@@ -90,11 +91,6 @@ int make(const tools::LoadedScene& scene, const std::string& kind, const char* b
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(made.bytes.data()), static_cast<std::streamsize>(made.bytes.size()));
     return 0;
-}
-
-AcdfLocalPoint at(const File& file, const float position[3], const float normal[3]) {
-    const LocalEnvironmentView view = file.local();
-    return view.has_visibility() ? view.at(position, normal) : view.at(normal);
 }
 
 /// What is measured.
@@ -196,16 +192,17 @@ volatile float sink;
 class CallTimes {
 public:
     void time(const File& file, const std::vector<ScenePoint>& seen, std::size_t count, bool sampled) {
+        const VisibleLocalView view = visible_view(file);
         std::mt19937_64 random(1);
         for (std::size_t first = 0, stretch = 0; first < kCalls; first += kStretch, ++stretch) {
             timespec time[2]{};
             clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time[0]);
             for (std::size_t i = first; i < first + kStretch; ++i) {
                 const measure::ShadingPoint& p = seen[i * 7919 % count * seen.size() / count].shading();
-                const AcdfLocalPoint prepared = at(file, p.position, p.n);
+                const AcdfVisiblePoint prepared = view.at(p.position, p.n);
                 const double u = static_cast<double>(random() >> 11) * 0x1p-53,
                              v = static_cast<double>(random() >> 11) * 0x1p-53;
-                sink = sampled ? file.local().sample(prepared, u, v).pdf : static_cast<float>(prepared.sum + u + v);
+                sink = sampled ? view.sample(prepared, u, v).pdf : static_cast<float>(prepared.local.sum + u + v);
             }
             clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time[1]);
             least_[stretch] = std::min(least_[stretch], 1e9 * static_cast<double>(time[1].tv_sec - time[0].tv_sec) +

@@ -8,6 +8,7 @@
 // whose pdf is another one when it is asked for. --exact: fails unless all are the same. Skips (77) where there is
 // no device.
 #include "device_answers.h"
+#include "visibility/visible_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +90,8 @@ bool of_file(const char* path, std::size_t count) {
             exact &= compare(name, OfEnvironment{device(file.environment())}, {file.environment()}, file, count);
             break;
         case ACDF_KIND_LOCAL:
-            exact &= compare(name, OfLocal{device(file.local())}, {file.local()}, file, count);
+            exact &=
+                compare(name, OfLocal{device(acdf::visible_view(file))}, {acdf::visible_view(file)}, file, count);
             break;
         case ACDF_KIND_BRDF:
             exact &= compare(name, OfBrdf{device(file.brdf())}, {file.brdf()}, file, count);

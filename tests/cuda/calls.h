@@ -1,7 +1,7 @@
 #pragma once
 
 #include <acdf/product/product.h>
-#include <acdf/views.h>
+#include <acdf/visibility/visibility.h>
 
 #include <cstdint>
 
@@ -38,9 +38,9 @@ struct OfEnvironment {
 };
 
 struct OfLocal {
-    acdf::LocalEnvironmentView view;
+    acdf::VisibleLocalView view;
     ACDF_METHOD Answer operator()(const Question& q) const {
-        const AcdfLocalPoint point = view.has_visibility() ? view.at(q.position, q.normal) : view.at(q.normal);
+        const AcdfVisiblePoint point = view.at(q.position, q.normal);
         const acdf::DirectionSample s = view.sample(point, q.u[0], q.u[1]);
         return answer(s, view.pdf(point, s.direction), view.pdf(point, q.direction));
     }

@@ -4,6 +4,8 @@
 #include <acdf/moved.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
+#include <acdf/visibility/visibility.h>
+#include <acdf/visibility/visibility_c.h>
 
 namespace acdf_test {
 
@@ -16,6 +18,11 @@ inline acdf::LocalEnvironmentView moved(const acdf::LocalEnvironmentView& view, 
     AcdfLocal data = view.data();
     acdf_move_local(&data, moves, count);
     return acdf::LocalEnvironmentView(data);
+}
+inline acdf::VisibleLocalView moved(const acdf::VisibleLocalView& view, const AcdfMove* moves, int count) {
+    AcdfVisibleLocal data = view.data();
+    acdf_move_visible_local(&data, moves, count);
+    return acdf::VisibleLocalView(data);
 }
 inline acdf::BrdfView moved(const acdf::BrdfView& view, const AcdfMove* moves, int count) {
     AcdfBrdf data = view.data();

@@ -4,9 +4,8 @@
 #include "device_array.h"
 #include "moved_views.h"
 
-#include <acdf/moved.h>
 #include <acdf/reader.h>
-#include <acdf/views.h>
+#include <acdf/visibility/visibility_c.h>
 
 namespace acdf_cuda {
 
@@ -14,7 +13,7 @@ namespace acdf_cuda {
 /// file may be closed.
 class DeviceFile {
 public:
-    explicit DeviceFile(const acdf::File& file) : count_(file.memory(moves_)) {
+    explicit DeviceFile(const acdf::File& file) : count_(acdf_visible_memory(file.get(), moves_)) {
         for (int i = 0; i < count_; ++i) {
             void* to = nullptr;
             require(cudaMalloc(&to, moves_[i].bytes + 3), "memory");
@@ -34,7 +33,7 @@ public:
     }
 
 private:
-    AcdfMove moves_[ACDF_MAX_MOVES];
+    AcdfMove moves_[ACDF_MAX_VISIBLE_MOVES];
     int count_;
 };
 

@@ -1,5 +1,7 @@
 #include "questions.h"
 
+#include "visibility/visible_view.h"
+
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -43,7 +45,8 @@ std::vector<Answer> all_answers(const Call& call, const std::vector<Question>& a
 
 std::vector<Question> questions(std::size_t count, unsigned batch, const acdf::File& file) {
     std::vector<Question> out(count);
-    const AcdfVisibility* scene = file.kind() == ACDF_KIND_LOCAL ? file.local().data().visibility.header : nullptr;
+    const AcdfVisibility* scene =
+        file.kind() == ACDF_KIND_LOCAL ? acdf::visible_view(file).data().cells.header : nullptr;
     on_all_cores(count, [&](std::size_t first, std::size_t last, std::size_t core) {
         Random random(1000 * batch + core);
         for (std::size_t i = first; i < last; ++i) {

@@ -2,7 +2,7 @@
 """The decoder of format/decoder, which was written from SPEC.md alone, against the program: on the test vectors, on the
 examples of format/examples.md, and on files of every kind and fit that the program makes anew.
 
-    decoder.py [--program ACDF --make-vectors MAKE_VECTORS] [--broken-files TEST_READER_RULES] [FILE.acdf FILE.csv]...
+    decoder.py [--program ACDF --make-vectors MAKE_VECTORS] [--broken-files TEST_RULES]... [FILE.acdf FILE.csv]...
 
 Tolerances are those of SPEC.md §6.7 and §14.1: tables bit for bit; directions to the neighbouring float or 2^-29; densities to a
 relative 1e-6 at the direction that the vectors tell.
@@ -200,11 +200,12 @@ def damaged_files(fail):
             fail.check(refused, f"{name}: byte {at}")
 
 
-def broken_files(program, fail):
+def broken_files(programs, fail):
     """Files that break one rule each, as the tests of the reader make them: refused by the number of that rule."""
     with tempfile.TemporaryDirectory() as name:
-        subprocess.run([program, "--gtest_filter=Rules.brokenFilesAreWrittenWhereAskedFor"], check=True,
-                       capture_output=True, env=dict(os.environ, ACDF_BROKEN_FILES=name))
+        for program in programs:
+            subprocess.run([program, "--gtest_filter=*.brokenFilesAreWrittenWhereAskedFor"], check=True,
+                           capture_output=True, env=dict(os.environ, ACDF_BROKEN_FILES=name))
         files = sorted(pathlib.Path(name).glob("*.acdf"))
         fail.check(len(files) > 250, "there are broken files")
         for file in files:
@@ -347,7 +348,8 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--program")
     parser.add_argument("--make-vectors")
-    parser.add_argument("--broken-files", help="the test program that writes files that break one rule each")
+    parser.add_argument("--broken-files", action="append",
+                        help="a test program that writes files that break one rule each")
     parser.add_argument("pairs", nargs="*", type=pathlib.Path)
     options = parser.parse_args()
     fail = Failures()

@@ -1,5 +1,7 @@
 // The test vectors of format/vectors against the reader, number by number: it made them, and it has to stay as it
 // was.
+#include "visibility/visible_view.h"
+
 #include <acdf/indexed/views.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -84,8 +86,8 @@ void check_conditional(const Row& row, const View& view, const char* prefix) {
         [&](const float* d) { return view.pdf(given.data(), d); });
 }
 
-void check_place(const Row& row, const acdf::LocalEnvironmentView& view) {
-    const AcdfLocalPoint point = view.at(direction(row, "p").data(), direction(row, "n").data());
+void check_place(const Row& row, const acdf::VisibleLocalView& view) {
+    const AcdfVisiblePoint point = view.at(direction(row, "p").data(), direction(row, "n").data());
     check_direction(
         row, [&](double u0, double u1) { return view.sample(point, u0, u1); },
         [&](const float* d) { return view.pdf(point, d); });
@@ -115,7 +117,7 @@ void check_table(const Row& row, const acdf::TableView& view) {
 void check_row(const Row& row, const acdf::File& file) {
     switch (file.kind()) {
     case ACDF_KIND_LOCAL:
-        if (row.count("px")) return check_place(row, file.local());
+        if (row.count("px")) return check_place(row, acdf::visible_view(file));
         return check_conditional(row, file.local(), "n");
     case ACDF_KIND_BRDF:
         return check_conditional(row, file.brdf(), "o");

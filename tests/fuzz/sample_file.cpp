@@ -11,6 +11,7 @@
 #include <acdf/acdf.h>
 #include <acdf/indexed/views.h>
 #include <acdf/shader/tables.h>
+#include <acdf/visibility/visibility.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -80,26 +81,34 @@ void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom& rando
         const acdf::DirectionSample again = view.sample(point, u0, u1);
         require(again.pdf == s.pdf && view.pdf(point, any) == view.pdf(normal, any));
         (void)view.stored(normal);
-        float position[3];
-        random.any_vector(position);
-        if (n % 2 == 1 && view.has_visibility()) // else hardly any lies in the cells
-            for (int k = 0; k < 3; ++k) {
-                const AcdfVisibility& cells = *view.data().visibility.header;
-                position[k] = static_cast<float>(double{cells.low[k]} +
-                                                 (double{cells.high[k]} - double{cells.low[k]}) * random.uniform());
-            }
-        const AcdfLocalPoint placed = view.at(position, normal);
-        const acdf::DirectionSample seen = view.sample(placed, u0, u1);
-        require(is_pdf(static_cast<double>(seen.pdf)) && is_pdf(static_cast<double>(view.pdf(placed, any))));
-        require(seen.pdf == 0.0f || (is_unit(seen.direction) && view.pdf(placed, seen.direction) > 0.0f));
         if (s.pdf == 0.0f) continue;
         require(is_unit(s.direction) && view.pdf(normal, s.direction) > 0.0f);
     }
-    sample_product(view, random);
     sample_everything(view.environment(), random);
 #if ACDF_BATCH
     sample_batches(view, random);
 #endif
+}
+
+void sample_everything(const acdf::VisibleLocalView& view, FuzzRandom& random) {
+    for (int n = 0; n < samples_a_file; ++n) {
+        float normal[3], any[3], position[3];
+        random.any_vector(normal);
+        random.any_vector(any);
+        random.any_vector(position);
+        const double u0 = random.any_u(), u1 = random.any_u();
+        if (n % 2 == 1 && view.has_cells()) // else hardly any lies in the cells
+            for (int k = 0; k < 3; ++k) {
+                const AcdfVisibility& cells = *view.data().cells.header;
+                position[k] = static_cast<float>(double{cells.low[k]} +
+                                                 (double{cells.high[k]} - double{cells.low[k]}) * random.uniform());
+            }
+        const AcdfVisiblePoint point = view.at(position, normal);
+        const acdf::DirectionSample s = view.sample(point, u0, u1);
+        require(is_pdf(static_cast<double>(s.pdf)) && is_pdf(static_cast<double>(view.pdf(point, any))));
+        require(s.pdf == 0.0f || (is_unit(s.direction) && view.pdf(point, s.direction) > 0.0f));
+    }
+    sample_product(view, random);
 }
 
 void sample_everything(const acdf::BrdfView& view, FuzzRandom& random) {
@@ -263,6 +272,10 @@ void sample_everything(const acdf::File& file, const void* bytes, std::size_t si
         file.header().header_crc % 2 == 1)
         lookups_are_descents(file.environment(), bytes, size, random);
     if (file.kind() == ACDF_KIND_LOCAL) sample_everything(file.local(), random);
+    acdf::VisibleLocalView visible;
+    require(file.kind() == ACDF_KIND_LOCAL || !acdf::VisibleLocalView::of(file, visible).ok());
+    if (file.kind() == ACDF_KIND_LOCAL && acdf::VisibleLocalView::of(file, visible).ok())
+        sample_everything(visible, random);
     if (file.kind() == ACDF_KIND_BRDF) sample_everything(file.brdf(), random);
     if (file.kind() == ACDF_KIND_TABLE) sample_everything(file.table(), random);
     if (file.kind() == ACDF_KIND_INDEXED) sample_maps(file, random);

@@ -5,13 +5,13 @@
 #include "tests/fuzz/require.h"
 
 #include <acdf/product/product.h>
-#include <acdf/views.h>
+#include <acdf/visibility/visibility.h>
 
 #include <cmath>
 
 namespace acdf_test {
 
-inline void sample_product(const acdf::LocalEnvironmentView& view, FuzzRandom& random) {
+inline void sample_product(const acdf::VisibleLocalView& view, FuzzRandom& random) {
     const auto density = [](const float*, const float* wi) { return wi[2] > 0.0f ? wi[2] / float(ACDF_PI) : 0.0f; };
     const auto draw = [&](const float* wo, double u0, double u1) {
         acdf::ProductSample s;

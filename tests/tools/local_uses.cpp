@@ -251,7 +251,7 @@ TEST(PlotLocal, KnotsAreTheBordersOfCells) {
     ASSERT_TRUE(File::open(shared.c_str(), file).ok());
     const AcdfEnvironment env = file.local().data().environment;
     const build::Map map = tools::plot_map(build::Layout::latlong, static_cast<int>(env.columns) * scale);
-    const auto opacity = tools::knot_opacity({file.local(), {0.0f, 0.0f, 1.0f}}, map);
+    const auto opacity = tools::knot_opacity({VisibleLocalView(file.local()), {0.0f, 0.0f, 1.0f}}, map);
     const double stretch = map.height / (double(env.rows) * scale);
     std::uint32_t borders = 0;
     const std::uint32_t tiles = static_cast<std::uint32_t>(build::tile_boxes(file).size());

@@ -61,7 +61,7 @@ std::string thumbnail(const std::string& path, const std::string& name) {
         shows += " for a view at 45 degrees";
     } else if (file.kind() == ACDF_KIND_LOCAL) {
         image = pdf_image(plot_map(build::Layout::latlong, kMapWidth),
-                          pdf_of(PlottedNormal{file.local(), {0.0f, 0.0f, 1.0f}}));
+                          pdf_of(PlottedNormal{VisibleLocalView(file.local()), {0.0f, 0.0f, 1.0f}}));
         shows += " for the normal +z";
     } else if (file.kind() == ACDF_KIND_ENVIRONMENT) {
         image = pdf_image(plot_map(build::Layout::latlong, kMapWidth), pdf_of(file.environment()));

@@ -10,6 +10,8 @@
 #include "tools/cli/validation.h"
 #include "tools/commands.h"
 
+#include <acdf/visibility/visibility.h>
+
 #include <tbb/enumerable_thread_specific.h>
 
 #include <cstdlib>
@@ -99,6 +101,10 @@ std::string why_due(const std::vector<std::uint8_t>& bytes, const BatchJob& job,
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
         return std::string("its output cannot be read (") + status.message + ")";
     if (file.kind() != file_kind(job)) return "its output is of kind " + build::kind_name(file.kind());
+    VisibleLocalView view;
+    if (file.kind() == ACDF_KIND_LOCAL)
+        if (const Status status = VisibleLocalView::of(file, view); !status.ok())
+            return std::string("its output is not valid (") + status.message + ")";
     if (const std::string had = value_of(file, "fit.options"); had != option_text)
         return "its options changed from " + had;
     if (!is_of_source(file, job)) return "its source changed";

@@ -6,6 +6,7 @@
 #include "tools/commands.h"
 
 #include <acdf/layout.h>
+#include <acdf/visibility/visibility.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -79,12 +80,23 @@ std::vector<std::uint8_t> read_acdf_bytes(const std::string& path) {
     return read_while(path, Limits().max_file_bytes, has_magic);
 }
 
+namespace {
+
+/// As File::from_memory, and checks what rooms beside the reader read of the file.
+Status open_bytes(const std::uint8_t* data, std::size_t size, File& file, IndexedEnvironment& maps) {
+    VisibleLocalView view;
+    const Status status = File::from_memory(data, size, file);
+    if (!status.ok()) return status;
+    if (file.kind() == ACDF_KIND_LOCAL) return VisibleLocalView::of(file, view);
+    return file.kind() == ACDF_KIND_INDEXED ? IndexedEnvironment::open(file, maps) : status;
+}
+
+} // namespace
+
 LoadedFile load_file(const std::string& path) {
     LoadedFile loaded;
     loaded.bytes = read_acdf_bytes(path);
-    Status status = File::from_memory(loaded.bytes.data(), loaded.bytes.size(), loaded.file);
-    if (status.ok() && loaded.file.kind() == ACDF_KIND_INDEXED)
-        status = IndexedEnvironment::open(loaded.file, loaded.maps);
+    const Status status = open_bytes(loaded.bytes.data(), loaded.bytes.size(), loaded.file, loaded.maps);
     if (status.ok()) return loaded;
     if (status.rule == 2002)
         throw Failure(shown(path) + ": " + what_is_it(loaded.bytes.data(), loaded.bytes.size()));
@@ -96,9 +108,8 @@ LoadedFile load_file(const std::string& path) {
 void check_reads_back(const std::uint8_t* data, std::size_t size) {
     File file;
     IndexedEnvironment maps;
-    Status status = File::from_memory(data, size, file);
-    if (status.ok() && file.kind() == ACDF_KIND_INDEXED) status = IndexedEnvironment::open(file, maps);
-    if (!status.ok()) throw Failure(std::string("cannot read back what was written: ") + status.message);
+    if (const Status status = open_bytes(data, size, file, maps); !status.ok())
+        throw Failure(std::string("cannot read back what was written: ") + status.message);
 }
 
 void fail_kind(const std::string& path, const File& file, const char* command, const char* wanted) {

@@ -1,6 +1,7 @@
 #include "tools/cli/validation.h"
 
 #include "indexed/check.h"
+#include "visibility/check.h"
 
 namespace acdf::tools {
 
@@ -12,12 +13,10 @@ Verdict validate_all(const std::vector<std::uint8_t>& bytes, const std::function
     Verdict verdict = validate(bytes.data(), bytes.size(), sink, context);
     File file;
     if (!verdict.valid() || !File::from_memory(bytes.data(), bytes.size(), file).ok()) return verdict;
-    if (file.kind() == ACDF_KIND_INDEXED) {
-        const Verdict maps = validate_maps(file, sink, context);
-        verdict.errors += maps.errors;
-        verdict.warnings += maps.warnings;
-    }
-    return verdict;
+    AcdfVisibleLocal view = {};
+    const Verdict beside = file.kind() == ACDF_KIND_INDEXED ? validate_maps(file, sink, context)
+                                                            : check_visibility(*file.get(), sink, context, view);
+    return {beside.errors, verdict.warnings + beside.warnings};
 }
 
 } // namespace acdf::tools

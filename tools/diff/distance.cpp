@@ -2,6 +2,7 @@
 
 #include "build/text/format_names.h"
 #include "measure/sequences.h"
+#include "visibility/visible_view.h"
 
 #include <acdf/sample.h>
 
@@ -180,7 +181,7 @@ Distance of_tables(const TableView (&view)[2], std::uint32_t samples) {
 std::string why_not_compared(const File& a, const File& b) {
     if (a.kind() != b.kind())
         return "one is of kind " + build::kind_name(a.kind()) + ", the other of kind " + build::kind_name(b.kind());
-    if (a.kind() == ACDF_KIND_LOCAL && (a.local().has_visibility() || b.local().has_visibility()))
+    if (a.kind() == ACDF_KIND_LOCAL && (visible_view(a).has_cells() || visible_view(b).has_cells()))
         return "files that store visibility cells are compared by their bytes alone";
     if (a.kind() == ACDF_KIND_INDEXED) return "files of several maps are compared by their bytes alone";
     if (a.kind() != ACDF_KIND_TABLE) return "";

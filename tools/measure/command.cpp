@@ -21,6 +21,7 @@
 #include "tools/measure/local.h"
 #include "tools/measure/memory.h"
 #include "tools/measure/table.h"
+#include "visibility/visible_view.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -173,7 +174,7 @@ void run(const MeasureArguments& options) {
     case ACDF_KIND_BRDF:
         return measure_brdf(options.file, loaded.file, options.source, options.views, options.json, options.quiet);
     case ACDF_KIND_LOCAL:
-        if (!loaded.file.local().has_visibility() && options.command->get_option("--points")->count() > 0)
+        if (!visible_view(loaded.file).has_cells() && options.command->get_option("--points")->count() > 0)
             throw CLI::ValidationError("--points", "is for files that store visibility cells");
         return measure_local(loaded.file, {options.file, options.source, options.input, options.normals,
                                            options.mesh, options.up, options.points, options.baselines,

@@ -18,6 +18,7 @@
 #include "tools/cli/probe_source.h"
 #include "tools/commands.h"
 #include "tools/measure/memory.h"
+#include "visibility/visible_view.h"
 
 #include <nlohmann/json.hpp>
 
@@ -221,7 +222,7 @@ void print_text(const File& file, const LocalMeasureOptions& options, const Loca
 } // namespace
 
 void measure_local(const File& file, const LocalMeasureOptions& options) {
-    const bool mesh = !options.mesh.empty() && file.local().has_visibility();
+    const bool mesh = !options.mesh.empty() && visible_view(file).has_cells();
     if (mesh && file.partner()) throw Failure(options.file + ": is made for an MIS partner; leave out --scene");
     const ProbeTarget source =
         source_target(options.file, file, options.source, options.input, options.quiet, options.filter);

@@ -54,7 +54,7 @@ measure::Camera camera_of(const input::Triangles& triangles, const CellsOptions&
     return out;
 }
 
-Colour shown(const LocalEnvironmentView& view, const measure::Hit& hit, double askance, bool turn) {
+Colour shown(const VisibleLocalView& view, const measure::Hit& hit, double askance, bool turn) {
     const Vec3& p = hit.position;
     const Vec3 own = turn ? Vec3{p[1], p[2], p[0]} : p;
     float position[3], normal[3];
@@ -62,16 +62,16 @@ Colour shown(const LocalEnvironmentView& view, const measure::Hit& hit, double a
         position[k] = static_cast<float>(own[k]);
         normal[k] = static_cast<float>(hit.n[k]);
     }
-    const AcdfLocalPoint point = view.at(position, normal);
-    const AcdfVisibilityTable& table = view.data().visibility;
-    Colour out = point.in_cell ? cell_colour(table, acdf_visibility_row(&table, point.place.cell)) : zero_colour;
+    const AcdfVisiblePoint point = view.at(position, normal);
+    const AcdfVisibilityTable& table = view.data().cells;
+    Colour out = point.in_cell ? cell_colour(table, acdf_visibility_row(&table, point.cell)) : zero_colour;
     for (float& channel : out) channel *= static_cast<float>(0.45 + 0.55 * askance);
     return out;
 }
 
 } // namespace
 
-images::Picture cells_picture(const LocalEnvironmentView& view, const CellsOptions& options) {
+images::Picture cells_picture(const VisibleLocalView& view, const CellsOptions& options) {
     const input::Triangles triangles = input::read_triangles(options.mesh, options.up);
     const measure::Camera camera = camera_of(triangles, options);
     measure::Geometry geometry;

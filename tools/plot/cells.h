@@ -5,7 +5,7 @@
 #include "input/normals/scene.h"
 
 #include <acdf/reader.h>
-#include <acdf/views.h>
+#include <acdf/visibility/visibility.h>
 
 #include <array>
 #include <optional>
@@ -24,6 +24,6 @@ struct CellsOptions {
 /// As displayed: the mesh seen by a camera, each cell with a colour of its own, darker where the surface is seen
 /// askance; colours are mixed as the file mixes the cells. Where it stores no visibility cells, the surface is
 /// grey. Throws input::Error.
-images::Picture cells_picture(const LocalEnvironmentView& view, const CellsOptions& options);
+images::Picture cells_picture(const VisibleLocalView& view, const CellsOptions& options);
 
 } // namespace acdf::tools

@@ -21,6 +21,7 @@
 #include "tools/plot/local.h"
 #include "tools/plot/panels.h"
 #include "tools/plot/source.h"
+#include "visibility/visible_view.h"
 
 #include <CLI/CLI.hpp>
 
@@ -177,7 +178,7 @@ void check_mesh(const CLI::App& command, const PlotArguments& options) {
 
 std::vector<std::uint8_t> make_cells(const PlotArguments& options) {
     const LoadedFile stored = load_file(options.file);
-    if (stored.file.kind() != ACDF_KIND_LOCAL || !stored.file.local().has_visibility())
+    if (stored.file.kind() != ACDF_KIND_LOCAL || !visible_view(stored.file).has_cells())
         throw Failure(options.file + ": stores no visibility cells; leave out --scene");
     CellsOptions cells;
     cells.mesh = options.mesh;
@@ -186,7 +187,7 @@ std::vector<std::uint8_t> make_cells(const PlotArguments& options) {
     if (!options.to.empty()) cells.to = {options.to[0], options.to[1], options.to[2]};
     if (options.width > 0) cells.width = options.width;
     cells.height = cells.width * 3 / 4;
-    return encode_png(cells_picture(stored.file.local(), cells),
+    return encode_png(cells_picture(visible_view(stored.file), cells),
                       {"acdf " ACDF_VERSION, "Visibility cells, a colour each"});
 }
 

@@ -10,7 +10,7 @@ namespace acdf::tools {
 
 namespace {
 
-AcdfLocalPoint point_of(const PlottedNormal& plotted) {
+AcdfVisiblePoint point_of(const PlottedNormal& plotted) {
     if (plotted.position) return plotted.local.at(plotted.position->data(), plotted.normal.data());
     return plotted.local.at(plotted.normal.data());
 }
@@ -18,21 +18,21 @@ AcdfLocalPoint point_of(const PlottedNormal& plotted) {
 } // namespace
 
 PdfFunction pdf_of(const PlottedNormal& plotted) {
-    const AcdfLocalPoint point = point_of(plotted);
+    const AcdfVisiblePoint point = point_of(plotted);
     return [view = plotted.local, point](const float direction[3]) { return view.pdf(point, direction); };
 }
 
 std::vector<float> knot_opacity(const PlottedNormal& plotted, const PlotMap& map, const build::Progress& progress) {
-    const AcdfLocal local = plotted.local.data();
-    const AcdfLocalPoint point = point_of(plotted);
-    const AcdfEnvironment& env = local.environment;
+    const AcdfVisibleLocal light = plotted.local.data();
+    const AcdfVisiblePoint point = point_of(plotted);
+    const AcdfEnvironment& env = light.local.environment;
     const AcdfGrid grid = acdf_environment_grid(&env);
     const FindCell find = [&](const float direction[3], AcdfRange range[2]) {
         std::uint32_t square[2];
         double position[2];
         acdf_sphere_ranges(env.columns, env.rows, range);
         if (acdf_grid_square(&grid, direction, square, position))
-            acdf_local_find_cell(&local, &point, square, range);
+            acdf_visible_find_cell(&light, &point, square, range);
     };
     return knot_opacity(find, grid, map, progress);
 }

@@ -5,7 +5,7 @@
 #include "tools/plot/pdf_image.h"
 
 #include <acdf/reader.h>
-#include <acdf/views.h>
+#include <acdf/visibility/visibility.h>
 
 #include <array>
 #include <optional>
@@ -16,7 +16,7 @@ namespace acdf::tools {
 using Normal = std::array<float, 3>;
 
 struct PlottedNormal {
-    LocalEnvironmentView local;
+    VisibleLocalView local;
     Normal normal;
     std::optional<std::array<float, 3>> position = {}; ///< a position of the file's scene
 };

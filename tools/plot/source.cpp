@@ -9,6 +9,7 @@
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
 #include "tools/plot/panels.h"
+#include "visibility/visible_view.h"
 
 #include <CLI/CLI.hpp>
 
@@ -78,11 +79,10 @@ void add_variance(const File& file, std::vector<std::string>& title) {
     }
 }
 
-std::optional<std::array<float, 3>> chosen_position(const PlotArguments& options,
-                                                    const LocalEnvironmentView& view) {
+std::optional<std::array<float, 3>> chosen_position(const PlotArguments& options, const VisibleLocalView& view) {
     const std::vector<float>& x = options.position;
     if (x.empty()) return std::nullopt;
-    if (!view.has_visibility()) throw Failure(options.file + ": stores no visibility cells; leave out --position");
+    if (!view.has_cells()) throw Failure(options.file + ": stores no visibility cells; leave out --position");
     const float up[3] = {0.0f, 0.0f, 1.0f};
     if (view.at(x.data(), up).in_cell == 0)
         throw Failure(options.file + ": the position of --position lies outside of its scene; see acdf info");
@@ -93,7 +93,8 @@ void load_local(const PlotArguments& options, Plotted& source) {
     const File& file = source.stored.file;
     source.panels = options.normal.empty() && !is_exr(options.output);
     const Normal chosen = source.panels ? panel_normals[0].normal : chosen_normal(options.file, options.normal);
-    source.local.emplace(PlottedNormal{file.local(), chosen, chosen_position(options, file.local())});
+    const VisibleLocalView view = visible_view(file);
+    source.local.emplace(PlottedNormal{view, chosen, chosen_position(options, view)});
     source.pdf = pdf_of(*source.local);
     source.columns = file.axis(ACDF_AXIS_PHI).resolution;
     source.rows = file.axis(ACDF_AXIS_THETA).resolution;

@@ -2,6 +2,7 @@
 
 #include "compress/parallel.h"
 #include "tools/cli/built.h"
+#include "visibility/visible_view.h"
 
 #include <acdf/learn.h>
 
@@ -36,7 +37,7 @@ void find_bounds(const std::vector<measure::ScenePoint>& points, builder::LearnO
 std::uint64_t learn(const std::vector<measure::ScenePoint>& points, std::uint64_t pass,
                     builder::LearnedVisibility& learned) {
     const std::shared_ptr<const File> file = learned.file();
-    const LocalEnvironmentView view = file->local();
+    const VisibleLocalView view = visible_view(*file);
     const std::size_t groups = (points.size() + kPointsAtOnce - 1) / kPointsAtOnce;
     std::vector<std::uint64_t> rays(groups, 0);
     compress::parallel_for(std::size_t{0}, groups, [&](std::size_t group) {
@@ -44,7 +45,7 @@ std::uint64_t learn(const std::vector<measure::ScenePoint>& points, std::uint64_
         const std::size_t end = std::min(points.size(), (group + 1) * kPointsAtOnce);
         for (std::size_t i = group * kPointsAtOnce; i < end; ++i) {
             const measure::ShadingPoint& at = points[i].shading();
-            const AcdfLocalPoint point = view.at(at.position, at.n);
+            const AcdfVisiblePoint point = view.at(at.position, at.n);
             const double u0 = random.uniform(), u1 = random.uniform();
             const DirectionSample s = view.sample(point, u0, u1);
             if (!(s.pdf > 0.0f)) continue;

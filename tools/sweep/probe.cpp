@@ -80,7 +80,7 @@ void add_pictures(Sweep& sweep, const compress::Target& target, const std::vecto
             add_picture(sweep, pdf_image(map, pdf_of(view)), knot_opacity(view, map), {}, picture_title(one.row),
                         "The pdf that this file stores, with the borders of its cells.");
         } else {
-            const PlottedNormal plotted{one.file->file.local(), normal};
+            const PlottedNormal plotted{VisibleLocalView(one.file->file.local()), normal};
             add_picture(sweep, pdf_image(map, pdf_of(plotted)), knot_opacity(plotted, map),
                         horizon_opacity(normal, map), picture_title(one.row) + ", normal (1, 0, 1)",
                         "The pdf that this file has for the normal (1, 0, 1), with the borders of its cells; the "

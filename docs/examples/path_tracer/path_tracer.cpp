@@ -99,10 +99,10 @@ struct EnvironmentLight {
 /// from the position.
 struct LocalLight {
     static constexpr bool draws = true;
-    acdf::LocalEnvironmentView view;
+    acdf::VisibleLocalView view;
     struct At {
-        const acdf::LocalEnvironmentView& view;
-        AcdfLocalPoint point;
+        const acdf::VisibleLocalView& view;
+        AcdfVisiblePoint point;
         acdf::DirectionSample sample(double u0, double u1) const { return view.sample(point, u0, u1); }
         float pdf(const float d[3]) const { return view.pdf(point, d); }
     };
@@ -242,8 +242,12 @@ Statistics run(const std::string& sampler, const std::string& light, const std::
         throw std::runtime_error(status.message);
     if (sampler == "environment" && file.kind() == ACDF_KIND_ENVIRONMENT)
         return render(sky, EnvironmentLight{file.environment()}, samples, out);
-    if (sampler == "local" && file.kind() == ACDF_KIND_LOCAL)
-        return render(sky, LocalLight{file.local()}, samples, out);
+    if (sampler == "local" && file.kind() == ACDF_KIND_LOCAL) {
+        acdf::VisibleLocalView view;
+        if (const acdf::Status status = acdf::VisibleLocalView::of(file, view); !status.ok())
+            throw std::runtime_error(status.message);
+        return render(sky, LocalLight{view}, samples, out);
+    }
     if (sampler == "product" && file.kind() == ACDF_KIND_LOCAL)
         return render(sky, ProductLight{file.local()}, samples, out);
     throw std::runtime_error(light + ": is not a file for " + sampler);

@@ -4,7 +4,7 @@
 
 #include <acdf/random.h>
 #include <acdf/reader.h>
-#include <acdf/views.h>
+#include <acdf/visibility/visibility.h>
 
 #include <pbrt/base/bxdf.h>
 #include <pbrt/util/error.h>
@@ -29,8 +29,10 @@ public:
         isLocal = file->kind() == ACDF_KIND_LOCAL;
         if (!isLocal && file->kind() != ACDF_KIND_ENVIRONMENT)
             ErrorExit("%s: a file of acdf env or acdf local is needed", path);
-        if (isLocal) local = file->local();
-        sky = isLocal ? local.environment() : file->environment();
+        if (isLocal)
+            if (acdf::Status status = acdf::VisibleLocalView::of(*file, local); !status.ok())
+                ErrorExit("%s: %s", path, status.message);
+        sky = isLocal ? local.local().environment() : file->environment();
     }
     /// Whether a file is open: pbrt's own tables are then neither built nor used.
     bool IsOpen() const { return !sky.empty(); }
@@ -61,7 +63,7 @@ private:
     // A file made for MIS has pdf 0 where BSDF samples suffice. Light samples alone use the whole environment of a
     // local file, which is complete.
     bool UsesNormal(Normal3f ns, bool allowIncompletePDF) const {
-        return isLocal && ns != Normal3f(0, 0, 0) && (allowIncompletePDF || !local.requires_mis());
+        return isLocal && ns != Normal3f(0, 0, 0) && (allowIncompletePDF || !local.local().requires_mis());
     }
     const acdf::EnvironmentView& Sky(bool allowIncompletePDF) const {
         if (!allowIncompletePDF && sky.requires_mis())
@@ -70,10 +72,10 @@ private:
                 "with --mis none");
         return sky;
     }
-    AcdfLocalPoint At(const Transform& renderFromLight, Point3f p, Normal3f ns) const {
+    AcdfVisiblePoint At(const Transform& renderFromLight, Point3f p, Normal3f ns) const {
         Normal3f n = renderFromLight.ApplyInverse(ns);
         float normal[3] = {-n.x, n.y, n.z};
-        if (!local.has_visibility()) return local.at(normal);
+        if (!local.has_cells()) return local.at(normal);
         p = renderFromLight.ApplyInverse(p); // render space is relative to the camera
         float position[3] = {p.x, p.y, p.z}; // as the mesh has them: the file stores the mesh's axes
         return local.at(position, normal);
@@ -81,7 +83,7 @@ private:
 
     std::shared_ptr<acdf::File> file;
     acdf::EnvironmentView sky;
-    acdf::LocalEnvironmentView local;
+    acdf::VisibleLocalView local;
     bool isLocal = false;
 };
 

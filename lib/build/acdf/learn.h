@@ -6,9 +6,10 @@
 //     acdf::builder::Status status = acdf::builder::LearnedVisibility::make(bytes, size, options, learned);
 //     for (int pass = 0; status.ok() && pass < passes; ++pass) {
 //         const std::shared_ptr<const acdf::File> file = learned.file(); // keeps the view valid
-//         const acdf::LocalEnvironmentView sky = file->local();
+//         acdf::VisibleLocalView sky; // of acdf/visibility/visibility.h
+//         acdf::VisibleLocalView::of(*file, sky);
 //         // all threads, at each vertex:
-//         const AcdfLocalPoint point = sky.at(position, normal);
+//         const AcdfVisiblePoint point = sky.at(position, normal);
 //         const acdf::DirectionSample s = sky.sample(point, u0, u1);
 //         learned.add(position, normal, s.direction, !occluded(position, s.direction));
 //         // then, once:

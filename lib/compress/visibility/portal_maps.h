@@ -3,7 +3,7 @@
 
 #include "compress/target.h"
 
-#include <acdf/portals.h>
+#include <acdf/visibility/portals.h>
 
 #include <array>
 #include <cstdint>

@@ -199,7 +199,7 @@ CellNumbers::CellNumbers(const AcdfVisibility& header, const std::vector<AcdfVis
     header_.split_count = static_cast<std::uint32_t>(splits.size());
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 4; ++k) header_.transform[i][k] = i == k ? 1.0f : 0.0f;
-    table_ = {&header_, splits.data(), nullptr, nullptr, rows_.data()};
+    table_ = {&header_, splits.data(), nullptr, nullptr, rows_.data(), nullptr};
 }
 
 std::uint32_t CellNumbers::of(const VisibilityPoint& point) const {

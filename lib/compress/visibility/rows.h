@@ -3,7 +3,7 @@
 
 #include "compress/visibility/cells.h"
 
-#include <acdf/visibility.h>
+#include <acdf/visibility/cells.h>
 
 #include <cstdint>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #include "compress/visibility/parts.h"
 
-#include <acdf/visibility.h>
+#include <acdf/visibility/cells.h>
 
 #include <cmath>
 #include <cstddef>

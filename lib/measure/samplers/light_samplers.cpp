@@ -8,6 +8,7 @@
 #include "measure/samplers/point_samplers.h"
 #include "measure/samplers/tiling.h"
 #include "measure/surface_frame.h"
+#include "visibility/visible_view.h"
 
 #include <acdf/moved.h>
 
@@ -92,28 +93,26 @@ private:
 
 struct LocalFile {
     const File& file;
-    LocalEnvironmentView view{file.local()};
-    bool visibility;
+    VisibleLocalView view;
     LocalFile(const File& f, bool with_visibility)
-        : file(f), visibility(with_visibility && view.has_visibility()) {}
+        : file(f), view(with_visibility ? visible_view(f) : VisibleLocalView(f.local())) {}
     std::uint64_t bytes() const { return memory_of(file); }
 };
 
 class LocalPoint final : public PointSampler {
 public:
-    explicit LocalPoint(const LocalFile& file) : view_(file.view), visibility_(file.visibility), point_() {}
+    explicit LocalPoint(const LocalFile& file) : view_(file.view), point_() {}
     void move_to(const ShadingPoint& point) override {
-        point_ = visibility_ ? view_.at(point.position, point.n) : view_.at(point.n);
+        point_ = view_.at(point.position, point.n);
         std::copy_n(point.n, 3, normal_);
     }
     AcdfDirectionSample sample(double u0, double u1) const override { return view_.sample(point_, u0, u1); }
     float pdf(const float wi[3]) const override { return view_.pdf(point_, wi); }
-    float recommended_light_share() const override { return view_.recommended_light_share(normal_); }
+    float recommended_light_share() const override { return view_.local().recommended_light_share(normal_); }
 
 private:
-    LocalEnvironmentView view_;
-    bool visibility_;
-    AcdfLocalPoint point_;
+    VisibleLocalView view_;
+    AcdfVisiblePoint point_;
     float normal_[3] = {0.0f, 0.0f, 1.0f};
 };
 

@@ -3,6 +3,7 @@
 #include "measure/samplers/ggx_lobe.h"
 #include "measure/samplers/light_samplers.h"
 #include "measure/samplers/point_samplers.h"
+#include "visibility/visible_view.h"
 
 #include <acdf/product/product.h>
 
@@ -44,7 +45,8 @@ std::unique_ptr<LightSampler> made(const File& light, const AnyLobe& lobe, int p
     const ProductOptions options{parts};
     const std::uint64_t bytes = memory_of(light) + brdf_bytes;
     if (light.kind() == ACDF_KIND_LOCAL)
-        return std::make_unique<Made>(Table{ProductSampler<AnyLobe>(light.local().data(), lobe, options), bytes});
+        return std::make_unique<Made>(
+            Table{ProductSampler<AnyLobe>(visible_view(light).data(), lobe, options), bytes});
     if (light.kind() == ACDF_KIND_ENVIRONMENT)
         return std::make_unique<Made>(
             Table{ProductSampler<AnyLobe>(light.environment().data(), lobe, options), bytes});

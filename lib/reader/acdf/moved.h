@@ -53,16 +53,6 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
     acdf_move_environment(&local->environment, moves, count);
     ACDF_MOVE(AcdfBin, local->bins);
     ACDF_MOVE(AcdfPartner, local->partner);
-    ACDF_MOVE(AcdfVisibility, local->visibility.header);
-    ACDF_MOVE(AcdfVisibilitySplit, local->visibility.splits);
-    ACDF_MOVE(AcdfColumn, local->visibility.columns);
-    ACDF_MOVE(uint16_t, local->visibility.set_of_row);
-    ACDF_MOVE(uint8_t, local->visibility.rows);
-    ACDF_MOVE(AcdfPortals, local->portals.header);
-    ACDF_MOVE(AcdfPortal, local->portals.portals);
-    ACDF_MOVE(AcdfPortalMap, local->portals.maps);
-    ACDF_MOVE(uint32_t, local->portals.sums);
-    ACDF_MOVE(uint8_t, local->portals.rows);
     ACDF_MOVE(AcdfNormalRows, local->rows_of_normals);
 }
 

@@ -40,7 +40,6 @@ typedef struct AcdfNormalRows {
     uint32_t bits;         /* the lookup grid has squares of 2^-bits of each axis, in rows of axis 0; 0: none */
     uint32_t starts;       /* uint32: of each square the deepest split that holds it, or ACDF_TOP_TILE | a tile */
     uint32_t position_scale[2]; /* step * scale / 2^32 is the square of a grid step */
-    uint32_t odds;              /* double[256]: what codes of visibility cells stand for; 0: there are none */
 } AcdfNormalRows;
 
 /* Rows, and what of all samples each has: whole numbers that add up to ACDF_WEIGHTS. */

@@ -22,10 +22,6 @@
 
 #include <acdf/file.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-
 namespace acdf {
 
 class EnvironmentView;
@@ -42,8 +38,8 @@ struct Status : AcdfError {
 
 /// Limits checked before anything is allocated; 0 stands for the default.
 struct Limits {
-    std::uint64_t max_file_bytes = std::uint64_t{1} << 32;
-    std::uint64_t max_inflated_bytes = std::uint64_t{1} << 30; ///< sum over compressed chunks
+    uint64_t max_file_bytes = uint64_t{1} << 32;
+    uint64_t max_inflated_bytes = uint64_t{1} << 30; ///< sum over compressed chunks
 };
 
 /// How a file is loaded.
@@ -69,9 +65,12 @@ class File {
 public:
     File() noexcept = default;
     ~File() { acdf_close(opened_); }
-    File(File&& other) noexcept : opened_(std::exchange(other.opened_, nullptr)) {}
+    File(File&& other) noexcept : opened_(other.opened_) { other.opened_ = nullptr; }
     File& operator=(File&& other) noexcept {
-        if (this != &other) acdf_close(std::exchange(opened_, std::exchange(other.opened_, nullptr)));
+        AcdfFile* const taken = other.opened_;
+        other.opened_ = nullptr;
+        acdf_close(opened_);
+        opened_ = taken;
         return *this;
     }
     File(const File&) = delete;
@@ -86,7 +85,7 @@ public:
     }
     /// Checks `size` bytes at `data`. They are used in place, and must outlive `file`, unless they are not
     /// aligned to 8 bytes (then copied). Compressed chunks are inflated into memory of the file's own.
-    static Status from_memory(const void* data, std::size_t size, File& file,
+    static Status from_memory(const void* data, size_t size, File& file,
                               const LoadOptions& options = {}) noexcept {
         Status status;
         const AcdfLoadOptions given = of(options);
@@ -103,25 +102,25 @@ public:
     AcdfKind kind() const noexcept { return acdf_kind(opened_); }
     const AcdfHeader& header() const noexcept { return *acdf_header(opened_); }
     const AcdfDescription& description() const noexcept { return *acdf_description(opened_); }
-    const AcdfAxis& axis(std::uint32_t i) const noexcept { return *acdf_axis(opened_, i); }
-    const AcdfBin& bin(std::uint32_t i) const noexcept { return *acdf_bin(opened_, i); }
+    const AcdfAxis& axis(uint32_t i) const noexcept { return *acdf_axis(opened_, i); }
+    const AcdfBin& bin(uint32_t i) const noexcept { return *acdf_bin(opened_, i); }
     bool has_bins() const noexcept { return acdf_bin(opened_, 0) != nullptr; }
     /// Chunk TREE, and its size in units of two bytes, in which offsets in it are counted.
-    const std::uint8_t* tree() const noexcept { return acdf_tree(opened_, nullptr); }
-    std::uint32_t tree_units() const noexcept {
-        std::uint32_t units = 0;
+    const uint8_t* tree() const noexcept { return acdf_tree(opened_, nullptr); }
+    uint32_t tree_units() const noexcept {
+        uint32_t units = 0;
         acdf_tree(opened_, &units);
         return units;
     }
-    std::uint64_t size() const noexcept { return acdf_size(opened_); }
+    uint64_t size() const noexcept { return acdf_size(opened_); }
     /// What the file is to be combined with; null: it is to be used alone.
     const AcdfPartner* partner() const noexcept { return acdf_partner(opened_); }
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
-    std::uint64_t table_bytes() const noexcept { return acdf_table_bytes(opened_); }
+    uint64_t table_bytes() const noexcept { return acdf_table_bytes(opened_); }
 
     /// Metadata pairs; `count` is 0 where the file carries none.
-    std::uint32_t metadata_count() const noexcept { return acdf_metadata_count(opened_); }
-    void metadata(std::uint32_t i, Text& key, Text& value) const noexcept {
+    uint32_t metadata_count() const noexcept { return acdf_metadata_count(opened_); }
+    void metadata(uint32_t i, Text& key, Text& value) const noexcept {
         key = value = {nullptr, 0};
         acdf_metadata_pair(opened_, i, &key, &value);
     }

@@ -33,27 +33,13 @@ public:
     ACDF_METHOD float pdf(const float normal[3], const float direction[3]) const noexcept {
         return acdf_local_pdf(&data_, normal, direction);
     }
-    /// A shading point: its normal is looked up once for all calls of sample and pdf that take the point. 216 bytes
+    /// A shading point: its normal is looked up once for all calls of sample and pdf that take the point. 120 bytes
     /// at most by value; valid while the File lives.
     ACDF_METHOD AcdfLocalPoint at(const float normal[3]) const noexcept {
         AcdfLocalPoint point;
         acdf_local_at(&data_, normal, &point);
         return point;
     }
-    /// A shading point of the scene that the file was made for, `position` in the scene's own coordinates.
-    /// Samples go towards light that reaches it, but for a small share. Outside of the scene's bounds, and of files
-    /// that do not store visibility cells, the normal alone counts. Where the scene has changed since, sampling
-    /// stays unbiased, and is noisier.
-    ACDF_METHOD AcdfLocalPoint at(const float position[3], const float normal[3]) const noexcept {
-        AcdfLocalPoint point;
-        acdf_local_at_position(&data_, position, normal, &point);
-        return point;
-    }
-    /// Whether there are visibility cells.
-    ACDF_METHOD bool has_visibility() const noexcept { return data_.visibility.header != nullptr; }
-    /// Whether the file stores portals that light comes through: samples go through them where a position sees
-    /// them.
-    ACDF_METHOD bool has_portals() const noexcept { return data_.portals.header != nullptr; }
     ACDF_METHOD DirectionSample sample(const AcdfLocalPoint& point, double u0, double u1) const noexcept {
         return acdf_local_sample_at(&data_, &point, u0, u1);
     }

@@ -5,9 +5,6 @@
 
 #include <acdf/halvings.h>
 #include <acdf/reader.h>
-#ifndef ACDF_ENVIRONMENT_ONLY
-#include <acdf/portals.h>
-#endif
 
 #include <cstring>
 #include <type_traits>
@@ -116,11 +113,9 @@ struct Parts {
     const AcdfViews* views = nullptr;           ///< of a BRDF
     const float* nodes = nullptr;               ///< views->theta_count
     const AcdfLocalHeader* local = nullptr;     ///< of local environments
-    AcdfVisibilityTable visibility = {};        ///< of local environments; its header is null where absent
     const AcdfNormalsHeader* normals = nullptr; ///< of a local environment on one tree of halvings
     const u8* normal_splits = nullptr;          ///< a bit for each halving; then the codes of each row,
     u64 normals_size = 0;                       ///< of so many bytes
-    AcdfPortalTable portals = {};               ///< beside visibility cells; its header is null where absent
 #endif
 };
 

@@ -5,16 +5,6 @@
 
 namespace acdf {
 
-namespace {
-
-// Beside BINS and TREE, what a local environment has.
-void check_local(const Payloads& payloads, Report& report, Parts& parts) {
-    check_local_kind(payloads.of[chunk_description], payloads.of[chunk_local], report, parts);
-    if (!report.stopped()) check_seen(payloads, report, parts);
-}
-
-} // namespace
-
 bool check_bins(const Payload& payload, Report& report, Parts& parts) noexcept {
     const u32 count = parts.description->bin_count;
     if (payload.size != u64{count} * sizeof(AcdfBin)) {
@@ -44,7 +34,7 @@ void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Pa
     check_tree(bins, payloads.of[chunk_tree], kind, report, parts);
     if (report.stopped()) return;
     if (kind == ACDF_KIND_ENVIRONMENT) check_environment(description, bins, report, parts);
-    if (kind == ACDF_KIND_LOCAL) check_local(payloads, report, parts);
+    if (kind == ACDF_KIND_LOCAL) check_local_kind(description, payloads.of[chunk_local], report, parts);
     if (kind == ACDF_KIND_BRDF) check_brdf_kind(payloads, report, parts);
 }
 

@@ -18,11 +18,6 @@ void check_tree(const Payload& bins, const Payload& tree, u32 kind, Report& repo
 /// The same of local environments, and LOCL. Sets parts.local.
 ACDF_ONCE void check_local_kind(const Payload& description, const Payload& local, Report& report,
                                 Parts& parts) noexcept;
-/// PLAC and PORT of a local environment, where they are; needs what check_local_kind and check_rows set. Sets
-/// parts.visibility and parts.portals if they are right.
-ACDF_ONCE void check_seen(const Payloads& payloads, Report& report, Parts& parts) noexcept;
-/// PORT; needs parts.visibility.
-ACDF_ONCE void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
 ACDF_ONCE void check_brdf_kind(const Payloads& payloads, Report& report, Parts& parts) noexcept;
 /// What a BRDF on one tree of halvings has beside HALV: BINS, NORM and VIEW; needs parts.halvings. Sets what

@@ -68,7 +68,6 @@ void check_normals(const Payloads& payloads, Report& report, Parts& parts) noexc
         report.add(7003, payloads.of[chunk_description].at(offsetof(AcdfDescription, axis_count)),
                    "a local environment of rows with %u axes", parts.description->axis_count);
     check_rows(payloads, report, parts);
-    if (!report.stopped()) check_seen(payloads, report, parts);
 }
 
 } // namespace acdf

@@ -8,8 +8,6 @@ namespace acdf {
 
 namespace {
 
-constexpr u64 kOddsCodes = 256;
-
 u64 to_row_line(u64 words) { return (words + 15) / 16 * 16; }
 
 // The least power of two whose square is at least a number of tiles: about as many groups as tiles in each.
@@ -30,8 +28,6 @@ public:
         take(tree_.root(), first, false);
         first[groups_] = tiles_;
         for (u32 r = 0; r < rows_->rows; ++r) make_row(r);
-        for (u32 code = 0; rows_->odds && code < kOddsCodes; ++code)
-            array<double>(rows_->odds)[code] = acdf_halving_share(code, ACDF_ODDS_BITS) * 0x1p-31;
         fill_top_starts(
             rows_->bits, rows_->position_scale, array<u32>(rows_->starts),
             [&](u32 at, u32& axis, u32& middle) {
@@ -107,7 +103,6 @@ bool lay_out(const Parts& parts, AcdfNormalRows& out) {
     place(out.starts, out.bits ? u64{1} << 2 * out.bits : 0);
     place(out.ends, count * group_stride);
     place(out.before, count * stride);
-    if (parts.visibility.header) place(out.odds, 2 * kOddsCodes);
     out.stride = static_cast<u32>(stride);
     out.group_stride = static_cast<u32>(group_stride);
     out.words = static_cast<u32>(at);

@@ -104,52 +104,52 @@ std::string bytes_of(const LearnedVisibility& of) {
     return out;
 }
 
-TEST(LearnedVisibility, IsUnbiased) { expect_unbiased(learned().file()->local(), Wall(), 300); }
+TEST(LearnedVisibility, IsUnbiased) { expect_unbiased(visible_view(*learned().file()), Wall(), 300); }
 TEST(LearnedVisibility, IsUnbiasedBesideCosineAndAlone) {
     ACDF_NOT_SANITIZED();
-    expect_unbiased(learned(true).file()->local(), Wall(), 200);
+    expect_unbiased(visible_view(*learned(true).file()), Wall(), 200);
 }
 TEST(LearnedVisibility, IsUnbiasedWhereAnObjectLeaves) {
     ACDF_NOT_SANITIZED();
-    expect_unbiased(learned().file()->local(), {1.0, 0.0, 0.0, 0.0}, 200);
+    expect_unbiased(visible_view(*learned().file()), {1.0, 0.0, 0.0, 0.0}, 200);
 }
 TEST(LearnedVisibility, IsUnbiasedWhereAnObjectMoves) {
     ACDF_NOT_SANITIZED();
-    expect_unbiased(learned().file()->local(), {-2.0, -1.0, 4.0, 3.0}, 200);
+    expect_unbiased(visible_view(*learned().file()), {-2.0, -1.0, 4.0, 3.0}, 200);
 }
 TEST(LearnedVisibility, IsUnbiasedWhereADoorOpens) { // all was hidden, but for what passes beside the wall
     ACDF_NOT_SANITIZED();
     LearnedVisibility closed = made();
     add(rays(50000, {1.0, -1e3, 1e3, 1e3}), closed);
     ASSERT_TRUE(closed.update().ok());
-    expect_unbiased(closed.file()->local(), Wall(), 200);
+    expect_unbiased(visible_view(*closed.file()), Wall(), 200);
 }
 TEST(LearnedVisibility, IsUnbiasedWhereLearningIsCutShort) {
     LearnedVisibility few = made();
     add(rays(50), few);
     ASSERT_TRUE(few.update().ok());
-    expect_unbiased(few.file()->local(), Wall(), 200);
+    expect_unbiased(visible_view(*few.file()), Wall(), 200);
 }
 
 TEST(LearnedVisibility, IsThatOfNormalsWhereNothingWasLearned) {
     LearnedVisibility nothing = made();
-    EXPECT_FALSE(nothing.file()->local().has_visibility());
+    EXPECT_FALSE(visible_view(*nothing.file()).has_cells());
     ASSERT_TRUE(nothing.update().ok());
     const auto file = nothing.file();
-    const LocalEnvironmentView view = file->local();
+    const VisibleLocalView view = visible_view(*file);
     std::mt19937_64 random(9);
     for (int i = 0; i < 1000; ++i) {
         VisibilityPoint point;
         point_of(std::uint64_t(i), point);
         const auto d = acdf_test::random_direction(random);
-        const double plain = double{view.pdf(point.normal, d.data())};
+        const double plain = double{view.local().pdf(point.normal, d.data())};
         EXPECT_NEAR(double{view.pdf(view.at(point.position, point.normal), d.data())}, plain,
                     0.1 * plain); // codes of even odds
     }
 }
 
 /// Beside cosine samples: an estimate of one of each, by the balance heuristic.
-double relative_variance(const LocalEnvironmentView& view, bool beside_cosine) {
+double relative_variance(const VisibleLocalView& view, bool beside_cosine) {
     double sum = 0.0;
     for (int i = 0; i < 150; ++i) {
         VisibilityPoint point;
@@ -165,12 +165,12 @@ double relative_variance(const LocalEnvironmentView& view, bool beside_cosine) {
 
 TEST(LearnedVisibility, SamplesWhatAPositionSees) {
     const auto plain = made().file(), seen = learned().file();
-    EXPECT_LT(relative_variance(seen->local(), false), relative_variance(plain->local(), false) / 2.0);
+    EXPECT_LT(relative_variance(visible_view(*seen), false), relative_variance(visible_view(*plain), false) / 2.0);
 }
 TEST(LearnedVisibility, BesideCosineSamplesWhatTheseLeaveOver) {
     const auto alone = learned().file(), beside = learned(true).file();
-    EXPECT_LT(relative_variance(beside->local(), true), relative_variance(alone->local(), true));
-    EXPECT_GT(relative_variance(beside->local(), false), relative_variance(alone->local(), false));
+    EXPECT_LT(relative_variance(visible_view(*beside), true), relative_variance(visible_view(*alone), true));
+    EXPECT_GT(relative_variance(visible_view(*beside), false), relative_variance(visible_view(*alone), false));
 }
 
 TEST(LearnedVisibility, IsTheSameInAnyOrderAndByAnyNumberOfThreads) {
@@ -200,7 +200,7 @@ TEST(LearnedVisibility, ViewsStayValidWhileTheNextIsMade) {
     add(all, changing);
     ASSERT_TRUE(changing.update().ok());
     const auto kept = changing.file();
-    const LocalEnvironmentView view = kept->local();
+    const VisibleLocalView view = visible_view(*kept);
     const auto pdf_of = [&](const Ray& ray) {
         return view.pdf(view.at(ray.from.position, ray.from.normal), ray.direction);
     };
@@ -217,7 +217,7 @@ TEST(LearnedVisibility, SavedFilesBeginTheNextFrame) {
     const std::string bytes = bytes_of(learned());
     LearnedVisibility next;
     ASSERT_TRUE(LearnedVisibility::make(bytes.data(), bytes.size(), floor_options(), next).ok());
-    EXPECT_TRUE(next.file()->local().has_visibility());
+    EXPECT_TRUE(visible_view(*next.file()).has_cells());
     EXPECT_EQ(bytes_of(next), bytes);
     EXPECT_LE(bytes.size(), light().size() + floor_options().bytes + 256);
     add(rays(200000), next);
@@ -290,7 +290,7 @@ TEST(LearnedVisibility, OfAFlatFloor) {
     ASSERT_TRUE(floor.update().ok());
     const auto file = floor.file();
     const float at[3] = {1.0f, 2.0f, 0.0f}, up[3] = {0.0f, 0.0f, 1.0f};
-    EXPECT_TRUE(file->local().at(at, up).in_cell);
+    EXPECT_TRUE(visible_view(*file).at(at, up).in_cell);
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 #include "tests/inputs/directions.h"
 #include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/sanitized.h"
+#include "visibility/visible_view.h"
 
 #include <acdf/builder.h>
 
@@ -102,7 +103,7 @@ struct RoomFile {
         EXPECT_TRUE(status.ok()) << status.message;
         EXPECT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
     }
-    LocalEnvironmentView view() const { return file.local(); }
+    VisibleLocalView view() const { return visible_view(file); }
 };
 /// Made by one thread.
 const RoomFile& windowed() {
@@ -120,7 +121,7 @@ struct Arrives {
     double irradiance = 0.0, variance = 0.0;
     int lost = 0;
 };
-Arrives arrives(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const VisibilityPoint& point,
+Arrives arrives(const VisibleLocalView& view, const AcdfVisiblePoint& at, const VisibilityPoint& point,
                 const Room& room) {
     constexpr int steps = 96;
     Arrives out;
@@ -157,19 +158,20 @@ Arrives arrives(const LocalEnvironmentView& view, const AcdfLocalPoint& at, cons
 void expect_as_summed(const RoomFile& made, const Room& room, int count, double spread) {
     constexpr int samples = 1000;
     count = acdf_test::repeated(count);
+    const VisibleLocalView view = made.view();
     std::mt19937_64 random(11);
     double sum = 0.0, square = 0.0;
     for (int i = 0; i < count; ++i) {
         VisibilityPoint point;
         point_of_room(1000003 + std::uint64_t(i), point);
-        const AcdfLocalPoint at = made.view().at(point.position, point.normal);
-        const Arrives truth = arrives(made.view(), at, point, room);
+        const AcdfVisiblePoint at = view.at(point.position, point.normal);
+        const Arrives truth = arrives(view, at, point, room);
         EXPECT_EQ(truth.lost, 0);
         double mean = 0.0;
         for (int k = 0; k < samples; ++k) {
-            const DirectionSample s = made.view().sample(at, uniform(random), uniform(random));
+            const DirectionSample s = view.sample(at, uniform(random), uniform(random));
             ASSERT_GT(s.pdf, 0.0f);
-            ASSERT_EQ(made.view().pdf(at, s.direction), s.pdf);
+            ASSERT_EQ(view.pdf(at, s.direction), s.pdf);
             const double cosine = cosine_of(point, s.direction);
             if (!(cosine > 0.0) || !leaves(room, point.position, s.direction)) continue;
             const double d[3] = {double{s.direction[0]}, double{s.direction[1]}, double{s.direction[2]}};
@@ -210,7 +212,7 @@ double mean_variance(const RoomFile& made) {
 TEST(PortalFiles, HaveLessNoiseThanCellsAlone) {
     ACDF_NOT_SANITIZED();
     const RoomFile visibility(of_room({}));
-    EXPECT_TRUE(visibility.view().has_visibility());
+    EXPECT_TRUE(visibility.view().has_cells());
     EXPECT_FALSE(visibility.view().has_portals());
     EXPECT_TRUE(windowed().view().has_portals());
     EXPECT_LE(windowed().local.bytes.size(), 64u << 10);
@@ -220,25 +222,26 @@ TEST(PortalFiles, HaveLessNoiseThanCellsAlone) {
 }
 
 TEST(PortalFiles, LoseNothingThatANormalMaySee) {
+    const VisibleLocalView view = windowed().view();
     std::mt19937_64 random(7);
     for (int i = 0; i < 100000; ++i) {
         const Normal normal = random_direction(random), direction = random_direction(random);
         const float *const n = normal.data(), *const d = direction.data();
         const float x[3] = {float(4.2 * uniform(random) - 2.1), float(4.2 * uniform(random) - 2.1),
                             float(2.2 * uniform(random) - 0.1)};
-        if (windowed().view().pdf(n, d) > 0.0f) {
-            ASSERT_GT(windowed().view().pdf(windowed().view().at(x, n), d), 0.0f);
+        if (view.local().pdf(n, d) > 0.0f) {
+            ASSERT_GT(view.pdf(view.at(x, n), d), 0.0f);
         }
     }
 }
 
 /// The first portal, as a position sees it.
-AcdfVisiblePortal seen_from(const LocalEnvironmentView& view, const float position[3], const float normal[3]) {
-    const AcdfLocal& local = view.data();
+AcdfVisiblePortal seen_from(const VisibleLocalView& view, const float position[3], const float normal[3]) {
+    const AcdfVisibleLocal& light = view.data();
     AcdfVisiblePortal out = {};
     double x[6];
-    EXPECT_TRUE(acdf_visibility_coordinates(&local.visibility, position, normal, x));
-    EXPECT_TRUE(acdf_portal_bounds(&local.portals, local.portals.portals, x, &out));
+    EXPECT_TRUE(acdf_visibility_coordinates(&light.cells, position, normal, x));
+    EXPECT_TRUE(acdf_portal_bounds(&light.portals, light.portals.portals, x, &out));
     return out;
 }
 
@@ -260,8 +263,8 @@ TEST(PortalFiles, AreThoseOfTheScenesOwnCoordinates) {
     VisibilityPoint point;
     point_of_room(17, point);
     const float there[3] = {2.0f * (1.0f - point.position[0]), 2.0f * point.position[1], 2.0f * point.position[2]};
-    const AcdfLocalPoint a = windowed().view().at(point.position, point.normal),
-                         b = other.view().at(there, point.normal);
+    const AcdfVisiblePoint a = windowed().view().at(point.position, point.normal),
+                           b = other.view().at(there, point.normal);
     ASSERT_EQ(a.portals, 1);
     ASSERT_EQ(b.portals, 1);
     const AcdfVisiblePortal of_a = seen_from(windowed().view(), point.position, point.normal),

@@ -33,7 +33,7 @@ struct Built {
         EXPECT_TRUE(status.ok()) << status.message;
         EXPECT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
     }
-    LocalEnvironmentView view() const { return file.local(); }
+    VisibleLocalView view() const { return visible_view(file); }
 };
 
 const Built& placed() {
@@ -60,8 +60,8 @@ TEST(VisibilityFiles, AreUnbiasedWhereTheWallStandsElsewhere) {
 TEST(VisibilityFiles, FillTheirBudget) {
     EXPECT_LE(placed().local.bytes.size(), 96u << 10);
     EXPECT_GE(placed().local.bytes.size(), 90u << 10);
-    EXPECT_TRUE(placed().view().has_visibility());
-    EXPECT_FALSE(plain().view().has_visibility());
+    EXPECT_TRUE(placed().view().has_cells());
+    EXPECT_FALSE(plain().view().has_cells());
 }
 
 /// A size that cannot be had is reported in bytes of the whole file.
@@ -75,7 +75,7 @@ TEST(VisibilityFiles, AreNotMadeLargerThanTheirBudget) {
     const std::uint64_t least = std::stoull(text.substr(start.size())), enough = least + least / 4;
     const Built built(with_visibility(enough));
     EXPECT_LE(built.local.bytes.size(), enough);
-    EXPECT_TRUE(built.view().has_visibility());
+    EXPECT_TRUE(built.view().has_cells());
 }
 
 /// Floats have no room for a margin around a floor that is flat and far away.
@@ -89,7 +89,7 @@ TEST(VisibilityFiles, OfAFloorFarFromTheOrigin) {
     };
     far.visibility.occluded = [](const VisibilityPoint&, const float*) { return false; };
     const Built built(far);
-    EXPECT_TRUE(built.view().has_visibility());
+    EXPECT_TRUE(built.view().has_cells());
     const float at[3] = {1.0f, 2.0f, 1e7f}, up[3] = {0.0f, 0.0f, 1.0f};
     EXPECT_TRUE(built.view().at(at, up).in_cell);
 }
@@ -109,14 +109,15 @@ TEST(VisibilityFiles, SampleWhatAPositionSees) {
 }
 
 TEST(VisibilityFiles, LoseNothingThatANormalMaySee) {
+    const VisibleLocalView view = placed().view();
     std::mt19937_64 random(7);
     for (int i = 0; i < 100000; ++i) {
         const Normal normal = random_direction(random), direction = random_direction(random);
         const float *const n = normal.data(), *const d = direction.data();
         const float x[3] = {float(9.0 * uniform(random) - 4.5), float(9.0 * uniform(random) - 4.5),
                             float(2.5 * uniform(random) - 0.2)};
-        const bool drawn = placed().view().pdf(placed().view().at(x, n), d) > 0.0f;
-        ASSERT_EQ(drawn, placed().view().pdf(n, d) > 0.0f);
+        const bool drawn = view.pdf(view.at(x, n), d) > 0.0f;
+        ASSERT_EQ(drawn, view.local().pdf(n, d) > 0.0f);
         const double cosine =
             double{n[0]} * double{d[0]} + double{n[1]} * double{d[1]} + double{n[2]} * double{d[2]};
         if (cosine > 1e-3) { // there is light everywhere

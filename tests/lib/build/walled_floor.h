@@ -5,6 +5,7 @@
 #include "tests/inputs/directions.h"
 #include "tests/inputs/nearest_lookup.h"
 #include "tests/inputs/sanitized.h"
+#include "visibility/visible_view.h"
 
 #include <acdf/builder.h>
 
@@ -78,7 +79,7 @@ struct Exact {
 };
 
 /// `cosine_samples`: beside each of the file's, by the balance heuristic.
-inline Exact exact(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const VisibilityPoint& point,
+inline Exact exact(const VisibleLocalView& view, const AcdfVisiblePoint& at, const VisibilityPoint& point,
                    const Wall& wall, double cosine_samples = 0.0) {
     Exact out;
     double square = 0.0;
@@ -101,7 +102,7 @@ inline Exact exact(const LocalEnvironmentView& view, const AcdfLocalPoint& at, c
 }
 
 /// The texel that a direction lies in, and its middle: what `exact` sums.
-inline double sampled(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const VisibilityPoint& point,
+inline double sampled(const VisibleLocalView& view, const AcdfVisiblePoint& at, const VisibilityPoint& point,
                       const Wall& wall, double u0, double u1) {
     const DirectionSample s = view.sample(at, u0, u1);
     if (!(s.pdf > 0.0f)) return 0.0;
@@ -119,7 +120,7 @@ inline double sampled(const LocalEnvironmentView& view, const AcdfLocalPoint& at
 
 /// Monte Carlo against summation at `count` points: how far the mean of all deviations, in their standard errors,
 /// is off, and the root of their mean square, which is 1 where both are right.
-inline void expect_unbiased(const LocalEnvironmentView& view, const Wall& wall, int count) {
+inline void expect_unbiased(const VisibleLocalView& view, const Wall& wall, int count) {
     constexpr int samples = 2000;
     count = acdf_test::repeated(count);
     std::mt19937_64 random(3);
@@ -127,7 +128,7 @@ inline void expect_unbiased(const LocalEnvironmentView& view, const Wall& wall, 
     for (int i = 0; i < count; ++i) {
         VisibilityPoint point;
         point_of(1000003 + std::uint64_t(i), point);
-        const AcdfLocalPoint at = view.at(point.position, point.normal);
+        const AcdfVisiblePoint at = view.at(point.position, point.normal);
         EXPECT_TRUE(at.in_cell);
         const Exact truth = exact(view, at, point, wall);
         EXPECT_EQ(truth.lost, 0);

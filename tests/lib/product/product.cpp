@@ -98,6 +98,7 @@ TEST(Product, PdfIntegratesToOne) {
         if (!has_cut(point)) return;
         ++cuts;
         const AcdfLocal light = loaded.light();
+        const AcdfVisibleLocal visible = acdf_visible_everywhere(&light);
         const AcdfGrid grid = acdf_environment_grid(&light.environment);
         double sum = 0.0;
         for (std::uint32_t y = 0; y < grid.rows; ++y)
@@ -105,7 +106,7 @@ TEST(Product, PdfIntegratesToOne) {
                 const AcdfRange square[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
                 const double middle[2] = {0.5, 0.5};
                 const AcdfDirectionSample at = acdf_grid_position(&grid, square, middle, 1.0);
-                const float p = acdf_cut_pdf(&light, &point.light, &point.cut, at.direction);
+                const float p = acdf_cut_pdf(&visible, &point.light, &point.cut, at.direction);
                 sum += double{p} * acdf_grid_solid_angle(&grid, square);
                 float wi[3];
                 point.frame.to_local(at.direction, wi);
@@ -149,7 +150,7 @@ TEST(Product, HemispheresWithoutLightAreTheLobes) {
     for (int i = 0; i < 100; ++i) {
         const acdf::SurfaceFrame frame = acdf::surface_frame(random_normal(rng).v);
         const Sampler::Point point = sampler.at(frame, frame.normal);
-        if (!loaded.file.local().stored(frame.normal) && point.light.what == ACDF_LOCAL_TREE) continue;
+        if (!loaded.file.local().stored(frame.normal) && point.light.local.what == ACDF_LOCAL_TREE) continue;
         ASSERT_EQ(point.share, 1.0);
         const acdf::ProductSample s = sampler.sample(point, uniform(rng), uniform(rng));
         float wi[3];

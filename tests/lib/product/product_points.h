@@ -117,7 +117,7 @@ constexpr double widths[] = {1.0, 0.1, 1e-3};
 using Sampler = acdf::ProductSampler<TestLobe>;
 
 inline bool has_cut(const Sampler::Point& point) {
-    return point.light.what == ACDF_LOCAL_ROWS && point.cut.count > 0;
+    return point.light.local.what == ACDF_LOCAL_ROWS && point.cut.count > 0;
 }
 
 // visit(file, lobe, sampler, point, name, random): of many files, with any number of parts.

@@ -48,7 +48,7 @@ std::vector<double> told(const acdf::DirectionSample& s, float pdf) {
 }
 struct Number {
     double u0, u1;
-    float normal[3], position[3];
+    float normal[3];
 };
 std::vector<double> told(const acdf::EnvironmentView& view, const Number& n) {
     const acdf::DirectionSample s = view.sample(n.u0, n.u1);
@@ -57,7 +57,7 @@ std::vector<double> told(const acdf::EnvironmentView& view, const Number& n) {
     return out;
 }
 std::vector<double> told(const acdf::LocalEnvironmentView& view, const Number& n) {
-    const AcdfLocalPoint point = view.at(n.position, n.normal);
+    const AcdfLocalPoint point = view.at(n.normal);
     const acdf::DirectionSample s = view.sample(point, n.u0, n.u1);
     auto out = told(s, view.pdf(point, s.direction));
     out.insert(out.end(), {view.irradiance(n.normal), double{view.recommended_light_share(n.normal)}});
@@ -86,7 +86,7 @@ void expect_the_same_moved(std::optional<acdf::File>& file, std::vector<std::uin
         const double r = std::sqrt(1.0 - z * z), phi = 5.3 * i;
         const float n[3] = {static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)),
                             static_cast<float>(z)};
-        numbers.push_back({u0 - std::floor(u0), u1, {n[0], n[1], n[2]}, {0.5f * n[1], 0.5f * n[2], 0.5f * n[0]}});
+        numbers.push_back({u0 - std::floor(u0), u1, {n[0], n[1], n[2]}});
     }
     std::vector<std::vector<double>> before;
     for (const Number& n : numbers) before.push_back(told(view, n));

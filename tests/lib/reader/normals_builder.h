@@ -2,9 +2,9 @@
 #pragma once
 
 #include "tests/lib/reader/local_builder.h"
-#include "tests/lib/reader/portals_spec.h"
 #include "tests/lib/reader/random_halvings.h"
-#include "tests/lib/reader/visibility_spec.h"
+#include "tests/lib/visibility/portals_spec.h"
+#include "tests/lib/visibility/visibility_spec.h"
 
 #include <algorithm>
 #include <array>

@@ -10,6 +10,7 @@
 #include <acdf/reader.h>
 #include <acdf/shader/tables.h>
 #include <acdf/views.h>
+#include <acdf/visibility/visibility.h>
 
 #include <cstdio>
 #include <cstring>
@@ -44,7 +45,10 @@ int main(int argc, char** argv) {
     acdf::File file;
     if (argc != 2 || !acdf::File::open(argv[1], file).ok() || file.kind() != ACDF_KIND_LOCAL) return 1;
     const acdf::LocalEnvironmentView light = file.local();
+    acdf::VisibleLocalView visible;
+    if (!acdf::VisibleLocalView::of(file, visible).ok()) return 1;
     const float up[3] = {0.0f, 0.0f, 1.0f};
+    if (visible.sample(visible.at(up, up), 0.9, 0.4).pdf != light.sample(up, 0.9, 0.4).pdf) return 1;
     const acdf::ProductSampler sampler(light.data(), acdf::Lobe(Cosine(), straight_up, cosine_pdf));
     const auto point = sampler.at(up, up);
     const acdf::ProductSample s = sampler.sample(point, 0.9, 0.4);

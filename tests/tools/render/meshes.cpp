@@ -1,6 +1,7 @@
 // Scenes of triangles: `acdf local --scene MESH --visibility` makes a file, `acdf render` looks from the same mesh.
 #include "tests/inputs/sanitized.h"
 #include "tests/tools/render/scenes.h"
+#include "visibility/visible_view.h"
 
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -175,13 +176,14 @@ TEST(MeshVisibility, OfMeshesWithYUpAreThoseOfTheirOwnCoordinates) {
     File z, y;
     ASSERT_TRUE(File::open((folder / "z.acdf").c_str(), z).ok());
     ASSERT_TRUE(File::open((folder / "y.acdf").c_str(), y).ok());
+    const VisibleLocalView of_z = visible_view(z), of_y = visible_view(y);
     const float n[3] = {0, 0, 1};
     for (int i = 0; i < 200; ++i) {
         const float p[3] = {float(i % 7) * 0.6f - 1.8f, float(i % 11) * 0.35f - 1.8f, float(i % 3) * 0.9f},
                     turned[3] = {p[1], p[2], p[0]};
-        const AcdfLocalPoint a = z.local().at(p, n), b = y.local().at(turned, n);
+        const AcdfVisiblePoint a = of_z.at(p, n), b = of_y.at(turned, n);
         ASSERT_TRUE(a.in_cell);
-        const DirectionSample s = z.local().sample(a, i / 200.0, 0.3), t = y.local().sample(b, i / 200.0, 0.3);
+        const DirectionSample s = of_z.sample(a, i / 200.0, 0.3), t = of_y.sample(b, i / 200.0, 0.3);
         // Sums over visible light are rounded in another order: a share of a row may be a step off.
         EXPECT_NEAR(s.pdf, t.pdf, 1e-5f * s.pdf);
         for (int k = 0; k < 3; ++k) EXPECT_EQ(s.direction[k], t.direction[k]);
@@ -223,14 +225,15 @@ TEST(MeshVisibility, OfAMirroredFrameAreThoseOfTheirOwnCoordinates) {
     File z, x;
     ASSERT_TRUE(File::open((folder / "z.acdf").c_str(), z).ok());
     ASSERT_TRUE(File::open((folder / "x.acdf").c_str(), x).ok());
+    const VisibleLocalView of_z = visible_view(z), of_x = visible_view(x);
     const float n[3] = {0, 0, 1};
     for (int i = 0; i < 200; ++i) {
         const float p[3] = {float(i % 7) * 0.6f - 1.8f, float(i % 11) * 0.35f - 1.8f, float(i % 3) * 0.9f},
                     there[3] = {-p[0], p[1], p[2]};
-        const AcdfLocalPoint a = z.local().at(p, n), b = x.local().at(there, n);
+        const AcdfVisiblePoint a = of_z.at(p, n), b = of_x.at(there, n);
         ASSERT_TRUE(b.in_cell);
-        const DirectionSample s = z.local().sample(a, i / 200.0, 0.3);
-        EXPECT_NEAR(x.local().pdf(b, s.direction), s.pdf, 0.01 * s.pdf); // normals are summed in another order
+        const DirectionSample s = of_z.sample(a, i / 200.0, 0.3);
+        EXPECT_NEAR(of_x.pdf(b, s.direction), s.pdf, 0.01 * s.pdf); // normals are summed in another order
     }
 }
 
@@ -329,10 +332,10 @@ TEST(MeshVisibility, OfSeveralFilesAreThoseOfAllTogether) {
     File a, b;
     ASSERT_TRUE(File::open((folder / "one.acdf").c_str(), a).ok());
     ASSERT_TRUE(File::open((folder / "two.acdf").c_str(), b).ok());
-    const AcdfLocal x = a.local().data(), y = b.local().data();
-    ASSERT_EQ(x.visibility.header->split_count, y.visibility.header->split_count);
-    for (std::uint32_t i = 0; i < x.visibility.header->split_count; ++i)
-        EXPECT_EQ(x.visibility.splits[i].position, y.visibility.splits[i].position);
+    const AcdfVisibleLocal x = visible_view(a).data(), y = visible_view(b).data();
+    ASSERT_EQ(x.cells.header->split_count, y.cells.header->split_count);
+    for (std::uint32_t i = 0; i < x.cells.header->split_count; ++i)
+        EXPECT_EQ(x.cells.splits[i].position, y.cells.splits[i].position);
 }
 
 /// In the middle of the room light comes from above, for whatever hangs there.
@@ -343,7 +346,7 @@ TEST(MeshVisibility, InTheAirKnowWhatIsHiddenThere) {
     ASSERT_TRUE(File::open((folder / "air.acdf").c_str(), file).ok());
     const std::string options = Json::parse(run_acdf({"info", "--json", folder / "air.acdf"}).out).at("options");
     EXPECT_NE(options.find("--visibility --volume"), std::string::npos) << options;
-    const LocalEnvironmentView view = file.local();
+    const VisibleLocalView view = visible_view(file);
     const float middle[3] = {0.0f, 1.0f, 1.0f}; // below the half that is open
     double sky = 0.0, alone = 0.0;
     for (const float side : {-1.0f, 1.0f})

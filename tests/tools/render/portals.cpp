@@ -1,6 +1,7 @@
 // Portals of files with visibility cells: given by --portal and --portals, and sampled in pictures.
 #include "tests/inputs/sanitized.h"
 #include "tests/tools/render/scenes.h"
+#include "visibility/visible_view.h"
 
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -31,7 +32,8 @@ struct Opened {
     File file;
 
     explicit Opened(const std::string& path) { EXPECT_TRUE(File::open(path.c_str(), file).ok()) << path; }
-    AcdfLocal data() const { return file.local().data(); }
+    VisibleLocalView view() const { return visible_view(file); }
+    AcdfVisibleLocal data() const { return view().data(); }
 };
 
 TEST(MeshPortals, AreGivenByCornersAndByAScene) {
@@ -45,9 +47,9 @@ TEST(MeshPortals, AreGivenByCornersAndByAScene) {
         folder.local("y.acdf", {"--scene-up", "y", "--visibility", "--portal", kOpeningYUp}, "y.obj");
     ASSERT_EQ(y_up.code, 0) << y_up.err;
     const Opened a(folder / "one.acdf"), b(folder / "two.acdf"), c(folder / "y.acdf");
-    ASSERT_TRUE(a.file.local().has_portals());
+    ASSERT_TRUE(a.view().has_portals());
     for (const Opened* other : {&b, &c}) {
-        ASSERT_TRUE(other->file.local().has_portals());
+        ASSERT_TRUE(other->view().has_portals());
         ASSERT_EQ(other->data().portals.header->portal_count, 1u);
         for (int k = 0; k < 3; ++k)
             EXPECT_NEAR(a.data().portals.portals->corner[k], other->data().portals.portals->corner[k], 1e-5);
@@ -55,8 +57,8 @@ TEST(MeshPortals, AreGivenByCornersAndByAScene) {
             EXPECT_NEAR(a.data().portals.portals->sides[k], other->data().portals.portals->sides[k], 1e-5);
     }
     const float x[3] = {0.5f, -1, 0.1f}, y[3] = {-1, 0.1f, 0.5f}, up[3] = {0, 0, 1};
-    EXPECT_EQ(a.file.local().at(x, up).portals, 1);
-    EXPECT_EQ(c.file.local().at(y, up).portals, 1);
+    EXPECT_EQ(a.view().at(x, up).portals, 1);
+    EXPECT_EQ(c.view().at(y, up).portals, 1);
 
     const Json info = Json::parse(run_acdf({"info", "--json", folder / "one.acdf"}).out);
     EXPECT_EQ(info.at("local").at("portals").at("count"), 1);
@@ -86,7 +88,7 @@ TEST(MeshPortals, EitherWindingServesInMirroredFramesToo) {
             ASSERT_EQ(made.code, 0) << axes << ", " << winding << ": " << made.err;
             EXPECT_EQ(made.err.find("portal 1"), std::string::npos) << made.err;
             const Opened file(folder / "a.acdf");
-            ASSERT_TRUE(file.file.local().has_portals());
+            ASSERT_TRUE(file.view().has_portals());
             const float* outside = file.data().portals.maps->axis[2];
             EXPECT_NEAR(outside[2], 1.0, 1e-5) << axes << ", " << winding;
             if (acdf_test::kSanitized) return;

@@ -14,6 +14,7 @@
 #include <acdf/indexed/open.h>
 #include <acdf/reader.h>
 
+#include <cstdint>
 #include <utility>
 
 namespace acdf {

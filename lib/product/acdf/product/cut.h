@@ -1,6 +1,7 @@
 /* A cut through the tiles of a local environment map: boxes that cover the sphere, each a split of the file's rows
  * with all below it, each with a probability of its own. What product sampling weighs at a shading point
- * (acdf/product/product.h). One freestanding header over acdf/local.h, valid C99, C++17 and CUDA/HIP/SYCL, with the
+ * (acdf/product/product.h). One freestanding header over
+ * acdf/visibility/visible_local.h, valid C99, C++17 and CUDA/HIP/SYCL, with the
  * same contract.
  *
  * Within a part the pdf is that of the local map, light times cosine; how much each part gets is up to whoever
@@ -10,6 +11,7 @@
 
 #include <acdf/product/box_bytes.h>
 #include <acdf/product/box_middle.h>
+#include <acdf/visibility/visible_local.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -42,8 +44,8 @@ typedef struct AcdfCut {
 } AcdfCut;
 
 /* The whole as one part, of probability 1. For points that rows serve (ACDF_LOCAL_ROWS). */
-ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut) {
-    const AcdfRowMixture* mix = &point->by.rows;
+ACDF_FN void acdf_cut_begin(const AcdfVisibleLocal* light, const AcdfVisiblePoint* point, AcdfCut* cut) {
+    const AcdfRowMixture* mix = &point->local.by.rows;
     AcdfCutPart* whole = &cut->part[0];
     int k;
     memset(whole, 0, sizeof *whole);
@@ -51,10 +53,10 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
     cut->nearest = 0;
     for (k = 1; k < mix->count; ++k)
         if (mix->weight[k] > mix->weight[cut->nearest]) cut->nearest = k;
-    whole->node = local->rows_of_normals->splits ? 0 : ACDF_TOP_TILE;
-    whole->end = local->rows_of_normals->splits + 1u;
-    whole->high[0] = local->environment.columns;
-    whole->high[1] = local->environment.rows;
+    whole->node = light->local.rows_of_normals->splits ? 0 : ACDF_TOP_TILE;
+    whole->end = light->local.rows_of_normals->splits + 1u;
+    whole->high[0] = light->local.environment.columns;
+    whole->high[1] = light->local.environment.rows;
     whole->sum = 1.0;
     whole->probability = 1.0;
 }
@@ -81,22 +83,23 @@ ACDF_INLINE AcdfCutPart* acdf_cut_add_split(AcdfCut* cut, int number, uint32_t p
 
 /* What of all samples the lower half of a part has: a whole number, out of 2^52, but for points in a visibility
  * cell. */
-ACDF_INLINE double acdf_cut_lower(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part,
-                                  const AcdfRowSplit* split) {
+ACDF_INLINE double acdf_cut_lower(const AcdfVisibleLocal* light, const AcdfVisiblePoint* point,
+                                  const AcdfCutPart* part, const AcdfRowSplit* split) {
     AcdfVisibilityCell cell;
     AcdfVisibleRows in;
-    if (!point->in_cell) return acdf_rows_mass(&point->by.rows, part->first, split->tile) * 0x1p-52;
-    in = acdf_local_visible_rows(local, point, &cell);
+    if (!point->in_cell) return acdf_rows_mass(&point->local.by.rows, part->first, split->tile) * 0x1p-52;
+    in = acdf_visible_rows(light, point, &cell);
     return acdf_clamp(acdf_visible_before(&in, split->tile) - acdf_visible_before(&in, part->first), 0.0,
                       part->sum);
 }
 
 /* Divides a part at its split: it becomes the lower half, and the last part is the upper one. */
-ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut, int number) {
+ACDF_CALLED void acdf_cut_divide(const AcdfVisibleLocal* light, const AcdfVisiblePoint* point, AcdfCut* cut,
+                                 int number) {
     AcdfCutPart* part = &cut->part[number];
-    const AcdfRowSplit* split = &acdf_row_splits(local->rows_of_normals)[part->node];
+    const AcdfRowSplit* split = &acdf_row_splits(light->local.rows_of_normals)[part->node];
     const uint32_t axis = split->place & 1u;
-    const double lower = acdf_cut_lower(local, point, part, split);
+    const double lower = acdf_cut_lower(light, point, part, split);
     AcdfCutPart* upper = acdf_cut_add_split(cut, number, split->place);
     upper->sum -= lower;
     part->sum = lower;
@@ -108,10 +111,10 @@ ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* p
 
 /* A direction from which a part is lit much: the middle of the tile that is reached where the traversal always
  * takes the half to which the row of most weight gives more. Returns the tile's number. */
-ACDF_CALLED uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
-                                    int number, float direction[3]) {
-    const AcdfNormalRows* rows = local->rows_of_normals;
-    const uint32_t* before = point->by.rows.before[cut->nearest];
+ACDF_CALLED uint32_t acdf_cut_heart(const AcdfVisibleLocal* light, const AcdfVisiblePoint* point,
+                                    const AcdfCut* cut, int number, float direction[3]) {
+    const AcdfNormalRows* rows = light->local.rows_of_normals;
+    const uint32_t* before = point->local.by.rows.before[cut->nearest];
     uint32_t first = cut->part[number].first, end = cut->part[number].end, node = cut->part[number].node;
     const AcdfTopTile* tile;
     uint32_t box[2][2], k;
@@ -127,20 +130,20 @@ ACDF_CALLED uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint
         box[k][0] = tile->box[k].end[0];
         box[k][1] = tile->box[k].end[1];
     }
-    acdf_box_middle(local, (const uint32_t(*)[2])box, direction);
+    acdf_box_middle(&light->local, (const uint32_t(*)[2])box, direction);
     return first;
 }
 
 /* Solid angle of a part, sr. */
-ACDF_FN double acdf_cut_solid_angle(const AcdfLocal* local, const AcdfCutPart* part) {
-    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+ACDF_FN double acdf_cut_solid_angle(const AcdfVisibleLocal* light, const AcdfCutPart* part) {
+    const AcdfGrid grid = acdf_environment_grid(&light->local.environment);
     AcdfSpan box[2];
     int i;
     for (i = 0; i < 2; ++i) {
         box[i].end[0] = part->low[i];
         box[i].end[1] = part->high[i];
     }
-    return 1.0 / acdf_box_scale(acdf_halved_heights(local->environment.halved), &grid, box);
+    return 1.0 / acdf_box_scale(acdf_halved_heights(light->local.environment.halved), &grid, box);
 }
 
 #ifdef __cplusplus

@@ -157,34 +157,35 @@ ACDF_FN const AcdfCutPart* acdf_cut_find(const AcdfCut* cut, const uint32_t* squ
 }
 
 /* What of the mixture a part has, out of 2^52. In it all tiles are as visible. */
-ACDF_INLINE double acdf_cut_mass(const AcdfLocalPoint* point, const AcdfCutPart* part) {
-    return !point->in_cell ? part->sum * 0x1p52 : acdf_rows_mass(&point->by.rows, part->first, part->end);
+ACDF_INLINE double acdf_cut_mass(const AcdfVisiblePoint* point, const AcdfCutPart* part) {
+    return !point->in_cell ? part->sum * 0x1p52 : acdf_rows_mass(&point->local.by.rows, part->first, part->end);
 }
 
 /* Pdf per steradian with which acdf_cut_sample samples `direction` (unit); of cuts that are finished. */
-ACDF_CALLED float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+ACDF_CALLED float acdf_cut_pdf(const AcdfVisibleLocal* light, const AcdfVisiblePoint* point, const AcdfCut* cut,
                                const float direction[3]) {
-    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    const AcdfGrid grid = acdf_environment_grid(&light->local.environment);
     AcdfRowSpot spot;
     AcdfRowCell cell;
     const AcdfCutPart* part;
     double inside;
     if (cut->count == 0) return 0.0f;
-    spot = acdf_rows_spot(local->rows_of_normals, &grid, direction);
-    if (!acdf_rows_locate(local->rows_of_normals, local->environment.halved, &grid, &spot, direction, &cell))
+    spot = acdf_rows_spot(light->local.rows_of_normals, &grid, direction);
+    if (!acdf_rows_locate(light->local.rows_of_normals, light->local.environment.halved, &grid, &spot, direction,
+                          &cell))
         return 0.0f;
     part = acdf_cut_find(cut, spot.square);
     if (!(part->probability > 0.0)) return 0.0f;
-    inside = acdf_rows_mass(&point->by.rows, spot.tile, spot.tile + 1u) / acdf_cut_mass(point, part);
+    inside = acdf_rows_mass(&point->local.by.rows, spot.tile, spot.tile + 1u) / acdf_cut_mass(point, part);
     return acdf_float_pdf(part->probability * inside * cell.share * cell.scale);
 }
 
 /* Samples a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0
  * (and no direction) where the cut is empty. */
-ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
+ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfVisibleLocal* light, const AcdfVisiblePoint* point,
                                                 const AcdfCut* cut, double u0, double u1) {
-    const AcdfGrid grid = acdf_environment_grid(&local->environment);
-    const AcdfRowMixture* mix = &point->by.rows;
+    const AcdfGrid grid = acdf_environment_grid(&light->local.environment);
+    const AcdfRowMixture* mix = &point->local.by.rows;
     AcdfDirectionSample out = {{0.0f, 0.0f, 0.0f}, 0.0f};
     const AcdfCutPart* part;
     double u[2], all, below, mass;
@@ -196,8 +197,9 @@ ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const Ac
     all = mass = acdf_cut_mass(point, part);
     below = acdf_rows_sum(mix, mix->before, part->first);
     tile = acdf_rows_search(mix, mix->before, part->first, part->end, &below, &mass, &u[1]);
-    return acdf_rows_direction(local->environment.halved, &grid, acdf_row_tile(local->rows_of_normals, tile),
-                               part->probability * (mass / all), u);
+    return acdf_rows_direction(light->local.environment.halved, &grid,
+                               acdf_row_tile(light->local.rows_of_normals, tile), part->probability * (mass / all),
+                               u);
 }
 
 #ifdef __cplusplus

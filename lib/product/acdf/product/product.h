@@ -32,8 +32,8 @@ struct ProductOptions {
 template <class LobePoint>
 struct ProductPoint {
     SurfaceFrame frame;
-    AcdfLocalPoint light; ///< what serves the normal
-    AcdfCut cut;          ///< empty where the light's own pdf is used as it is, or not at all
+    AcdfVisiblePoint light; ///< what serves the normal
+    AcdfCut cut;            ///< empty where the light's own pdf is used as it is, or not at all
     LobePoint lobe;
     double share; ///< of the samples that the BRDF's own sampler samples; below 0: nothing is sampled
 };
@@ -47,13 +47,18 @@ class ProductSampler {
 public:
     using Point = ProductPoint<typename AnyLobe::Point>;
 
-    ACDF_METHOD ProductSampler(const AcdfLocal& light, const AnyLobe& lobe,
+    /// Of a VisibleLocalView: with the visibility cells of the file.
+    ACDF_METHOD ProductSampler(const AcdfVisibleLocal& light, const AnyLobe& lobe,
                                const ProductOptions& options = {}) noexcept
         : light_(light), local_(true), lobe_(lobe), parts_(options.parts) {}
+    /// Of a LocalEnvironmentView: without them.
+    ACDF_METHOD ProductSampler(const AcdfLocal& light, const AnyLobe& lobe,
+                               const ProductOptions& options = {}) noexcept
+        : light_(acdf_visible_everywhere(&light)), local_(true), lobe_(lobe), parts_(options.parts) {}
     ACDF_METHOD ProductSampler(const AcdfEnvironment& light, const AnyLobe& lobe,
                                const ProductOptions& options = {}) noexcept
         : light_(), local_(false), lobe_(lobe), parts_(options.parts) {
-        light_.environment = light;
+        light_.local.environment = light;
     }
 
     /// Prepares a shading point, for any number of samples. `wo`: towards the viewer, a unit vector in the frame of
@@ -61,7 +66,7 @@ public:
     ACDF_METHOD Point at(const SurfaceFrame& frame, const float wo[3]) const noexcept {
         return at(nullptr, frame, wo);
     }
-    /// The same where the light's file stores visibility cells: at a `position` of its scene; null: anywhere.
+    /// The same where the light has visibility cells: at a `position` of its scene; null: anywhere.
     ACDF_METHOD Point at(const float position[3], const SurfaceFrame& frame, const float wo[3]) const noexcept;
     /// The same with a frame of its own around the unit `normal`: for BRDFs that are the same all around it.
     ACDF_METHOD Point at(const float normal[3], const float wo[3]) const noexcept {
@@ -83,7 +88,7 @@ private:
         return lobe_.pdf(point.lobe, wi);
     }
     ACDF_METHOD static float mixed(const Point& point, float light, float lobe) noexcept;
-    AcdfLocal light_;
+    AcdfVisibleLocal light_;
     bool local_; ///< or an environment alone
     AnyLobe lobe_;
     int parts_;
@@ -98,27 +103,26 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
     point.cut.count = 0;
     point.share = -1.0;
     frame.to_local(wo, local_wo);
-    point.light.what = ACDF_LOCAL_NOTHING;
+    point.light.local.what = ACDF_LOCAL_NOTHING;
     if (!lobe_.at(local_wo, point.lobe)) return point;
-    if (local_) {
-        if (position) acdf_local_at_cells(&light_, position, frame.normal, &point.light);
-        else acdf_local_at(&light_, frame.normal, &point.light);
-    } else {
-        point.light.what = ACDF_LOCAL_TREE;
-        point.light.by.root = light_.environment.root;
+    if (local_) acdf_visible_at_cells(&light_, position, frame.normal, &point.light);
+    else {
+        point.light.local.what = ACDF_LOCAL_TREE;
+        point.light.local.by.root = light_.local.environment.root;
         point.light.in_cell = point.light.portals = 0;
     }
-    point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
+    point.share = point.light.local.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
     const PointOfLobe<AnyLobe> of_lobe = {light_, point.light, point.frame, lobe_, point.lobe, parts_};
-    if (point.light.what == ACDF_LOCAL_ROWS) point.share = CutRating<AnyLobe>(of_lobe, point.cut).make();
+    if (point.light.local.what == ACDF_LOCAL_ROWS) point.share = CutRating<AnyLobe>(of_lobe, point.cut).make();
     return point;
 }
 
 template <class AnyLobe>
 ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const float direction[3]) const noexcept {
     if (!(point.share >= 0.0 && point.share < 1.0)) return 0.0f;
-    if (point.light.what == ACDF_LOCAL_ROWS) return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
-    return acdf_local_pdf_at(&light_, &point.light, direction);
+    if (point.light.local.what == ACDF_LOCAL_ROWS)
+        return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
+    return acdf_local_pdf_at(&light_.local, &point.light.local, direction);
 }
 
 /// Of the mixture, by those of its parts.
@@ -149,10 +153,10 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
         return out;
     }
     const double rest = (u - point.share) / (1.0 - point.share);
-    if (point.light.what == ACDF_LOCAL_ROWS) {
+    if (point.light.local.what == ACDF_LOCAL_ROWS) {
         out = acdf_cut_sample(&light_, &point.light, &point.cut, rest, u1);
     } else {
-        out = acdf_local_sample_at(&light_, &point.light, rest, u1);
+        out = acdf_local_sample_at(&light_.local, &point.light.local, rest, u1);
         if (out.pdf > 0.0f) out.pdf = light_pdf(point, out.direction);
     }
     if (out.pdf > 0.0f) out.pdf = mixed(point, out.pdf, lobe_pdf(point, out.direction));

@@ -2,16 +2,16 @@
 // lobe. C++17, header only, freestanding.
 #pragma once
 
-#include <acdf/local.h>
 #include <acdf/product/lobe.h>
 #include <acdf/product/part_rating.h>
+#include <acdf/visibility/visible_local.h>
 
 namespace acdf {
 
 template <class AnyLobe>
 struct PointOfLobe {
-    const AcdfLocal& light;
-    const AcdfLocalPoint& at; ///< of the light
+    const AcdfVisibleLocal& light;
+    const AcdfVisiblePoint& at; ///< of the light
     const SurfaceFrame& frame;
     const AnyLobe& lobe;
     const typename AnyLobe::Point& lobe_at;
@@ -46,14 +46,14 @@ struct PointOfLobe {
     /// Adds samples of the lobe's own sampler, without weights, to none; their directions into `world`. In their
     /// place: what is written in pieces and copied at once would be waited for.
     ACDF_METHOD void sample_guides(float (*world)[3], LobeGuides& out) const noexcept {
-        const AcdfGrid grid = acdf_environment_grid(&light.environment);
+        const AcdfGrid grid = acdf_environment_grid(&light.local.environment);
         const int sampled = parts < 12 ? 2 : LobeGuides::most;
         out.sampled = sampled;
         for (int i = 0; i < sampled; ++i) {
             const ProductSample s = guide(lobe, lobe_at, i, sampled);
             if (!(s.pdf > 0.0f && s.direction[2] > 0.0f)) continue;
             frame.to_world(s.direction, world[out.count]);
-            const AcdfRowSpot spot = acdf_rows_spot(light.rows_of_normals, &grid, world[out.count]);
+            const AcdfRowSpot spot = acdf_rows_spot(light.local.rows_of_normals, &grid, world[out.count]);
             if (!spot.valid) continue;
             const float value = bounded(lobe.value(lobe_at, s.direction, s.pdf)), pdf = bounded(s.pdf);
             if (!(value > 0.0f && pdf > 0.0f)) continue;

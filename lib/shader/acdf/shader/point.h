@@ -1,4 +1,4 @@
-/* Shading points of a local environment for shaders: what serves a normal, as acdf/local_point.h says, in floats,
+/* Shading points of a local environment for shaders: what serves a normal, as acdf/local.h says, in floats,
  * over the words of acdf/shader/tree.h. One text for processors and for shaders of every language (acdf/dialect.h).
  */
 #ifndef ACDF_SHADER_POINT_H

@@ -24,12 +24,10 @@ std::vector<Case> partner_cases();
 std::vector<Case> description_cases();
 std::vector<Case> tree_cases();
 std::vector<Case> table_cases();
-std::vector<Case> brdf_cases();       ///< of kind 3
-std::vector<Case> visibility_cases(); ///< of kind 2 with visibility cells
-std::vector<Case> portal_cases();     ///< and with portals
-std::vector<Case> local_cases();      ///< of kind 2
-std::vector<Case> halvings_cases();   ///< of kind 1 with HALV
-std::vector<Case> indexed_cases();    ///< of kind 5, of tests/lib/indexed
-std::vector<Case> normals_cases();    ///< of kind 2 with HALV
+std::vector<Case> brdf_cases();     ///< of kind 3
+std::vector<Case> local_cases();    ///< of kind 2
+std::vector<Case> halvings_cases(); ///< of kind 1 with HALV
+std::vector<Case> indexed_cases();  ///< of kind 5, of tests/lib/indexed
+std::vector<Case> normals_cases();  ///< of kind 2 with HALV
 
 } // namespace acdf_test

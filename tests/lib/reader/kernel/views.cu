@@ -18,13 +18,13 @@
 #endif
 
 #include <acdf/product/product.h>
-#include <acdf/views.h>
+#include <acdf/visibility/visibility.h>
 
 typedef acdf::ProductSampler<acdf::BrdfLobe> Product;
 
 struct Scene {
     acdf::EnvironmentView sky;
-    acdf::LocalEnvironmentView local;
+    acdf::VisibleLocalView local;
     acdf::BrdfView brdf;
     acdf::TableView table;
 };
@@ -34,8 +34,12 @@ __global__ void draw(const Scene* scene, const double* u, const float* normal, f
     double x[6], again[2];
     acdf::DirectionSample s = sky.sample(u[0], u[1]);
     out[0] = s.pdf + sky.pdf(s.direction) + (float)sky.invert(s.direction, again);
-    s = scene->local.sample(normal, u[0], u[1]);
-    out[1] = s.pdf + scene->local.pdf(normal, s.direction) + (float)scene->local.irradiance(normal);
+    const acdf::LocalEnvironmentView local = scene->local.local();
+    s = local.sample(normal, u[0], u[1]);
+    out[1] = s.pdf + local.pdf(normal, s.direction) + (float)local.irradiance(normal);
+    const AcdfVisiblePoint visible = scene->local.at(normal, normal);
+    s = scene->local.sample(visible, u[0], u[1]);
+    out[5] = s.pdf + scene->local.pdf(visible, s.direction);
     s = scene->brdf.sample(normal, u[0], u[1]);
     out[2] = s.pdf + scene->brdf.pdf(normal, s.direction) + (float)scene->brdf.albedo(normal);
     const Product product(scene->local.data(), acdf::BrdfLobe(scene->brdf.data()));

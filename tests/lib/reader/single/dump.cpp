@@ -144,7 +144,7 @@ void sample(const AcdfLocal& light, Random random, int count, Digest& digest) {
         digest.add(acdf_local_pdf(&light, n, w));
         digest.add(acdf_local_irradiance(&light, n));
         AcdfLocalPoint point;
-        acdf_local_at_position(&light, w, n, &point);
+        acdf_local_at(&light, n, &point);
         const AcdfDirectionSample at = acdf_local_sample_at(&light, &point, u1, u0);
         digest.add(at.pdf);
         digest.add(acdf_local_pdf_at(&light, &point, w));

@@ -1,7 +1,7 @@
 // Files with portals that break one rule each.
-#include "tests/lib/reader/check/cases.h"
-#include "tests/lib/reader/load.h"
 #include "tests/lib/reader/normals_builder.h"
+#include "tests/lib/visibility/cases.h"
+#include "tests/lib/visibility/load.h"
 
 #include <gtest/gtest.h>
 
@@ -93,22 +93,22 @@ std::vector<Case> portal_cases() {
 namespace {
 
 TEST(PortalRules, whatIsAtTheirLimitsIsRight) {
-    expect_valid(windowed_normals().encode());
-    expect_valid(windowed([](PortalsSpec& p) { // one portal, of one piece, and a map of one cell without light
+    expect_visible(windowed_normals().encode());
+    expect_visible(windowed([](PortalsSpec& p) { // one portal, of one piece, and a map of one cell without light
         p.portals.resize(1);
         p.maps.resize(1);
         p.size = p.pieces = 1;
         p.maps[0].light = {0};
         for (Bytes& row : p.rows) row.resize(2);
     })());
-    expect_valid(windowed([](PortalsSpec& p) { // eight portals of sixteen pieces
+    expect_visible(windowed([](PortalsSpec& p) { // eight portals of sixteen pieces
         p.portals.resize(8, p.portals[2]);
         p.pieces = 4;
         for (Bytes& row : p.rows) row.resize(1 + 8 * 16);
     })());
     NormalsSpec zipped = windowed_normals();
     zipped.zlib = true;
-    expect_valid(zipped.encode());
+    expect_visible(zipped.encode());
 }
 
 } // namespace

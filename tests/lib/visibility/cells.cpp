@@ -1,9 +1,6 @@
 // Visibility: what is sampled where, from files written by hand, and the frozen one.
 #include "tests/lib/reader/golden_numbers.h"
-#include "tests/lib/reader/local_loaded.h"
-
-#include <acdf/reader.h>
-#include <acdf/views.h>
+#include "tests/lib/visibility/visible_loaded.h"
 
 #include <gtest/gtest.h>
 
@@ -37,10 +34,10 @@ TEST(Visibility, PdfsIntegrateToOne) {
     for (NormalsSpec spec : {visible_normals(), regional_normals(), regional_normals()}) {
         spec.cosine_share = share;
         share = 0.25f;
-        const LoadedLocal loaded(spec);
+        const LoadedVisible loaded(spec);
         for (const auto& n : kNormals)
             for (const auto& x : kPositions) {
-                const AcdfLocalPoint point = loaded.view().at(x, n);
+                const AcdfVisiblePoint point = loaded.view().at(x, n);
                 EXPECT_TRUE(point.in_cell);
                 double sum = 0.0;
                 for_each_direction(
@@ -52,11 +49,11 @@ TEST(Visibility, PdfsIntegrateToOne) {
 
 TEST(Visibility, SamplesHaveThePdfThatIsFoundForThem) {
     for (const NormalsSpec& spec : {visible_normals(), regional_normals()}) {
-        const LoadedLocal loaded(spec);
+        const LoadedVisible loaded(spec);
         std::mt19937_64 random(5);
         for (const auto& n : kNormals)
             for (const auto& x : kPositions) {
-                const AcdfLocalPoint point = loaded.view().at(x, n);
+                const AcdfVisiblePoint point = loaded.view().at(x, n);
                 for (int i = 0; i < 300; ++i) {
                     const double u0 = double(random() >> 11) * 0x1p-53, u1 = double(random() >> 11) * 0x1p-53;
                     const acdf::DirectionSample s = loaded.view().sample(point, u0, u1);
@@ -70,8 +67,8 @@ TEST(Visibility, SamplesHaveThePdfThatIsFoundForThem) {
 /// The frequency of directions in octants against the integral of the pdf there.
 TEST(Visibility, DirectionsFallWhereThePdfSays) {
     for (const NormalsSpec& spec : {visible_normals(), regional_normals()}) {
-        const LoadedLocal loaded(spec);
-        const AcdfLocalPoint point = loaded.view().at(kPositions[3], kNormals[1]);
+        const LoadedVisible loaded(spec);
+        const AcdfVisiblePoint point = loaded.view().at(kPositions[3], kNormals[1]);
         const auto octant = [](const float* d) { return (d[0] > 0) + 2 * (d[1] > 0) + 4 * (d[2] > 0); };
         double expected[8] = {}, found[8] = {};
         for_each_direction([&](const float* d, double angle) {
@@ -88,10 +85,10 @@ TEST(Visibility, DirectionsFallWhereThePdfSays) {
 
 TEST(Visibility, NothingThatANormalSeesIsLost) {
     for (const NormalsSpec& spec : {visible_normals(), regional_normals()}) {
-        const LoadedLocal loaded(spec);
+        const LoadedVisible loaded(spec);
         for (const auto& n : kNormals)
             for (const auto& x : kPositions) {
-                const AcdfLocalPoint here = loaded.view().at(x, n), anywhere = loaded.view().at(n);
+                const AcdfVisiblePoint here = loaded.view().at(x, n), anywhere = loaded.view().at(n);
                 for_each_direction([&](const float* d, double) {
                     EXPECT_EQ(loaded.view().pdf(here, d) > 0.0f, loaded.view().pdf(anywhere, d) > 0.0f);
                 });
@@ -100,20 +97,20 @@ TEST(Visibility, NothingThatANormalSeesIsLost) {
 }
 
 TEST(Visibility, OutsideTheNormalAloneCounts) {
-    const LoadedLocal loaded(visible_normals());
+    const LoadedVisible loaded(visible_normals());
     const float nan = std::nanf("");
     const float outside[][3] = {{-1.5f, 0, 1}, {0, 2.5f, 1}, {0, 0, -0.1f}, {nan, 0, 1}, {0, 0, INFINITY}};
     for (const auto& x : outside)
         for (double u : {0.1, 0.5, 0.9}) {
-            const AcdfLocalPoint point = loaded.view().at(x, kNormals[1]);
+            const AcdfVisiblePoint point = loaded.view().at(x, kNormals[1]);
             EXPECT_FALSE(point.in_cell);
             const acdf::DirectionSample a = loaded.view().sample(point, u, u),
-                                        b = loaded.view().sample(kNormals[1], u, u);
+                                        b = loaded.view().local().sample(kNormals[1], u, u);
             EXPECT_EQ(a.pdf, b.pdf);
             for (int k = 0; k < 3; ++k) EXPECT_EQ(a.direction[k], b.direction[k]);
         }
-    const LoadedLocal plain(small_normals());
-    EXPECT_FALSE(plain.view().has_visibility());
+    const LoadedVisible plain(small_normals());
+    EXPECT_FALSE(plain.view().has_cells());
     EXPECT_FALSE(plain.view().at(kPositions[0], kNormals[0]).in_cell);
 }
 
@@ -121,23 +118,23 @@ TEST(Visibility, PositionsAreTransformed) {
     NormalsSpec spec = visible_normals(), turned = visible_normals();
     const float to_cells[12] = {0, 0, 2, 1, 2, 0, 0, 0, 0, 2, 0, -1}; // twice (z, x, y), moved
     std::copy_n(to_cells, 12, turned.visibility->transform);
-    const LoadedLocal loaded(spec), other(turned);
+    const LoadedVisible loaded(spec), other(turned);
     for (const auto& x : kPositions) {
         const float there[3] = {x[1] / 2, (x[2] + 1) / 2, (x[0] - 1) / 2};
-        const AcdfLocalPoint a = loaded.view().at(x, kNormals[1]), b = other.view().at(there, kNormals[1]);
+        const AcdfVisiblePoint a = loaded.view().at(x, kNormals[1]), b = other.view().at(there, kNormals[1]);
         EXPECT_TRUE(a.in_cell);
         EXPECT_TRUE(b.in_cell);
-        EXPECT_EQ(a.place.cell, b.place.cell);
+        EXPECT_EQ(a.cell, b.cell);
     }
 }
 
 /// A border belongs to the upper side.
 TEST(Visibility, ABorderHasTwoSides) {
-    const LoadedLocal loaded(visible_normals());
+    const LoadedVisible loaded(visible_normals());
     const float up[3] = {0, 0, 1}, right[3] = {std::nextafter(1.0f, 0.0f), -1.0f, 1.0f},
                 at[3] = {1.0f, -1.0f, 1.0f};
-    EXPECT_EQ(loaded.view().at(right, up).place.cell, 0u);
-    EXPECT_EQ(loaded.view().at(at, up).place.cell, 1u);
+    EXPECT_EQ(loaded.view().at(right, up).cell, 0u);
+    EXPECT_EQ(loaded.view().at(at, up).cell, 1u);
 }
 
 class GoldenVisibility : public ::testing::TestWithParam<const char*> {};
@@ -149,12 +146,14 @@ TEST_P(GoldenVisibility, SampleTheSameSamples) {
     walked.tables = false;
     const acdf::Status status = acdf::File::open((path + ".acdf").c_str(), file, walked);
     ASSERT_TRUE(status.ok()) << status.message;
+    acdf::VisibleLocalView view;
+    ASSERT_TRUE(acdf::VisibleLocalView::of(file, view).ok());
     const auto lines = golden_numbers<12>(path + ".txt");
     ASSERT_EQ(lines.size(), 6u * 6u * 16u);
     for (const std::array<double, 12>& v : lines) {
         const float x[3] = {float(v[0]), float(v[1]), float(v[2])}, n[3] = {float(v[3]), float(v[4]), float(v[5])};
-        const AcdfLocalPoint point = file.local().at(x, n);
-        const acdf::DirectionSample s = file.local().sample(point, v[6], v[7]);
+        const AcdfVisiblePoint point = view.at(x, n);
+        const acdf::DirectionSample s = view.sample(point, v[6], v[7]);
         for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(double{s.direction[k]}, v[8 + k]);
         EXPECT_EQ(double{s.pdf}, v[11]);
     }

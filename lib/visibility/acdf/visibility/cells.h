@@ -1,12 +1,12 @@
-/* Only the light that reaches a position: one freestanding header over acdf/normal_rows.h, valid C99, C++17 and
- * CUDA/HIP/SYCL, with the same contract (SPEC.md §12).
+/* Visibility cells: only the light that reaches a position. One freestanding header over acdf/normal_rows.h, valid
+ * C99, C++17 and CUDA/HIP/SYCL, with the same contract (SPEC.md §12).
  *
  * Positions and normals lie in the cells of a k-d tree. The tiles of the tree of halvings, in their order, are
  * parted at *columns*, which all cells of a region have. A cell has a row of bytes: how much of all light reaches
  * it and, at each column, how much from either side. Those multiply what rows of normals give to the sides; the
  * products are made to add up to 1 again at each column, so that the pdf is exact whatever the bytes are. */
-#ifndef ACDF_VISIBILITY_H
-#define ACDF_VISIBILITY_H
+#ifndef ACDF_VISIBILITY_CELLS_H
+#define ACDF_VISIBILITY_CELLS_H
 
 #include <acdf/normal_rows.h>
 
@@ -20,6 +20,7 @@ typedef struct AcdfVisibilityTable {
     const AcdfColumn* columns;         /* sets of them */
     const uint16_t* set_of_row;        /* null where there is but one set */
     const uint8_t* rows;
+    const double* odds; /* [256]: of what a column's code gives both sides, the share of the lower one */
 } AcdfVisibilityTable;
 
 /* A visibility cell. */
@@ -134,8 +135,7 @@ typedef struct AcdfVisibleSides {
 } AcdfVisibleSides;
 
 ACDF_INLINE AcdfVisibleSides acdf_visible_sides(const AcdfVisibleRows* in, const AcdfVisiblePart* at) {
-    const double* of_code = ACDF_TOP_ARRAY(double, in->rows, in->rows->odds);
-    const double odds = of_code[in->cell->row[1u + at->column]];
+    const double odds = in->table->odds[in->cell->row[1u + at->column]];
     AcdfVisibleSides out;
     out.column = in->cell->columns[at->column];
     out.lower = acdf_rows_sum(in->mix, in->mix->before, out.column.tile) - at->below;

@@ -1,5 +1,5 @@
 // How much of the light reaches a position: PLAC. Linear in its bytes.
-#include "check/kinds.h"
+#include "visibility/check.h"
 
 #include <cmath>
 
@@ -26,8 +26,8 @@ bool check_size(const Payload& payload, u32 top_splits, Report& report) {
     const AcdfVisibility& h = *reinterpret_cast<const AcdfVisibility*>(payload.data);
     if (h.row_count < 1 || h.row_count >= ACDF_VISIBILITY_ROW || h.split_count >= ACDF_VISIBILITY_ROW ||
         h.column_count > top_splits || h.column_count >= ACDF_MAX_COLUMNS || h.further_sets > 0xFFFF) {
-        report.add(7009, payload.at(0), "%u splits, %u rows, %u columns, %u further sets of them", h.split_count,
-                   h.row_count, h.column_count, h.further_sets);
+        report.add(7009, payload.at(0), "PLAC has %u splits, %u rows, %u columns, %u further sets of them",
+                   h.split_count, h.row_count, h.column_count, h.further_sets);
         return false;
     }
     const u64 size = rows_at(h) + u64{h.row_count} * (1 + u64{h.column_count});
@@ -41,7 +41,9 @@ void check_bounds(const Payload& payload, const AcdfVisibility& h, Report& repor
     for (u32 k = 0; k < 3; ++k) {
         bool right = std::isfinite(h.low[k]) && std::isfinite(h.high[k]) && h.low[k] < h.high[k];
         for (const float t : h.transform[k]) right = right && std::isfinite(t);
-        if (!right) report.add(7010, payload.at(offsetof(AcdfVisibility, low)), "coordinate %u", k);
+        if (!right)
+            report.add(7010, payload.at(offsetof(AcdfVisibility, low)),
+                       "coordinate %u of cells: bounds and transform must be finite, `low` less than `high`", k);
     }
 }
 
@@ -58,23 +60,23 @@ bool check_splits(const Payload& payload, const AcdfVisibility& h, const AcdfVis
         const Open now = open[--count];
         if (now.node & ACDF_VISIBILITY_ROW) {
             if ((now.node & ~ACDF_VISIBILITY_ROW) < h.row_count) continue;
-            report.add(7011, at(0), "row %u of %u", now.node & ~ACDF_VISIBILITY_ROW, h.row_count);
+            report.add(7011, at(0), "a cell has row %u of %u", now.node & ~ACDF_VISIBILITY_ROW, h.row_count);
             return false;
         }
         if (now.node != next || next >= h.split_count || now.depth == ACDF_MAX_VISIBILITY_DEPTH) {
-            report.add(7011, at(0), "split %u, %u deep, comes where %u of %u is due", now.node, now.depth, next,
-                       h.split_count);
+            report.add(7011, at(0), "split %u of cells, %u deep, comes where %u of %u is due", now.node, now.depth,
+                       next, h.split_count);
             return false;
         }
         const AcdfVisibilitySplit& split = splits[next];
         if ((split.lower & 7u) > 5 || !std::isfinite(split.position))
-            report.add(7012, at(next), "split %u: axis %u, position %g", next, split.lower & 7u,
+            report.add(7012, at(next), "split %u of cells: axis %u, position %g", next, split.lower & 7u,
                        static_cast<double>(split.position));
         ++next;
         open[count++] = {split.upper, now.depth + 1};
         open[count++] = {split.lower >> 3, now.depth + 1};
     }
-    if (next != h.split_count) report.add(7011, at(0), "%u of %u splits are met", next, h.split_count);
+    if (next != h.split_count) report.add(7011, at(0), "%u of %u splits of cells are met", next, h.split_count);
     return next == h.split_count;
 }
 
@@ -100,7 +102,8 @@ bool check_columns(const Payload& payload, const AcdfVisibility& h, const AcdfCo
                    Report& report) {
     for (u32 set = 0; set <= h.further_sets; ++set) {
         if (are_columns(columns + u64{set} * h.column_count, h.column_count, top_splits)) continue;
-        report.add(7013, payload.at(columns_at(h)), "set %u of %u columns", set, h.column_count);
+        report.add(7013, payload.at(columns_at(h)), "set %u of %u columns is no tree in preorder over the tiles",
+                   set, h.column_count);
         return false;
     }
     return true;
@@ -109,7 +112,8 @@ bool check_columns(const Payload& payload, const AcdfVisibility& h, const AcdfCo
 bool check_sets(const Payload& payload, const AcdfVisibility& h, const u16* set_of_row, Report& report) {
     for (u32 row = 0; set_of_row && row < h.row_count; ++row) {
         if (set_of_row[row] <= h.further_sets) continue;
-        report.add(7015, payload.at(sets_at(h) + u64{row} * sizeof *set_of_row), "row %u", row);
+        report.add(7015, payload.at(sets_at(h) + u64{row} * sizeof *set_of_row), "row %u has set %u of %u", row,
+                   set_of_row[row], h.further_sets + 1);
         return false;
     }
     return true;
@@ -122,39 +126,32 @@ void check_odds(const Payload& payload, const AcdfVisibilityTable& table, Report
         for (u64 i = 1; i < width; ++i) {
             const u8 code = table.rows[row * width + i];
             if (code != 0 && code != 255) continue;
-            report.add(7014, payload.at(rows_at(h) + row * width + i), "row %u", row);
+            report.add(7014, payload.at(rows_at(h) + row * width + i),
+                       "row %u gives nothing to a side of a column: code %u", row, code);
             return;
         }
 }
 
-void check_visibility(const Payload& payload, Report& report, Parts& parts) {
-    if (!parts.local) return; // reported elsewhere
-    if (!parts.normals) {
-        report.add(7009, payload.at(0), "there are visibility cells, but no rows of normals");
-        return;
-    }
-    const u32 top_splits = parts.normals->split_count;
-    if (!check_size(payload, top_splits, report)) return;
-    const auto* header = reinterpret_cast<const AcdfVisibility*>(payload.data);
-    const auto* splits = reinterpret_cast<const AcdfVisibilitySplit*>(header + 1);
-    const auto* columns = reinterpret_cast<const AcdfColumn*>(splits + header->split_count);
-    const auto* set_of_row = reinterpret_cast<const u16*>(payload.data + sets_at(*header));
-    const AcdfVisibilityTable table{header, splits, columns, header->further_sets > 0 ? set_of_row : nullptr,
-                                    payload.data + rows_at(*header)};
-    check_bounds(payload, *header, report);
-    const bool split = check_splits(payload, *header, splits, report);
-    const bool sets = check_sets(payload, *header, table.set_of_row, report);
-    const bool right = check_columns(payload, *header, columns, top_splits, report);
-    check_odds(payload, table, report);
-    if (split && sets && right) parts.visibility = table;
-}
-
 } // namespace
 
-void check_seen(const Payloads& payloads, Report& report, Parts& parts) noexcept {
-    if (payloads.of[chunk_visibility].data) check_visibility(payloads.of[chunk_visibility], report, parts);
-    if (payloads.of[chunk_portals].data && !report.stopped())
-        check_portals(payloads.of[chunk_portals], report, parts);
+void check_cells(const Payload& payload, u32 splits, Report& report, AcdfVisibilityTable& cells) noexcept {
+    if (!check_size(payload, splits, report)) return;
+    const auto* header = reinterpret_cast<const AcdfVisibility*>(payload.data);
+    const auto* parts = reinterpret_cast<const AcdfVisibilitySplit*>(header + 1);
+    const auto* columns = reinterpret_cast<const AcdfColumn*>(parts + header->split_count);
+    const auto* set_of_row = reinterpret_cast<const u16*>(payload.data + sets_at(*header));
+    const AcdfVisibilityTable table{header,
+                                    parts,
+                                    columns,
+                                    header->further_sets > 0 ? set_of_row : nullptr,
+                                    payload.data + rows_at(*header),
+                                    visibility_odds};
+    check_bounds(payload, *header, report);
+    const bool split = check_splits(payload, *header, parts, report);
+    const bool sets = check_sets(payload, *header, table.set_of_row, report);
+    const bool right = check_columns(payload, *header, columns, splits, report);
+    check_odds(payload, table, report);
+    if (split && sets && right) cells = table;
 }
 
 } // namespace acdf

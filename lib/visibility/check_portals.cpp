@@ -1,5 +1,5 @@
 // Rectangles that light comes through: PORT. Linear in its bytes.
-#include "check/kinds.h"
+#include "visibility/check.h"
 
 #include <cmath>
 
@@ -21,8 +21,8 @@ bool check_portal_size(const Payload& payload, u32 rows, Report& report) {
     if (h.portal_count < 1 || h.portal_count > ACDF_MAX_PORTALS || h.map_count < 1 ||
         h.map_count > h.portal_count || h.size < 1 || h.size > ACDF_MAX_PORTAL_CELLS || h.pieces < 1 ||
         h.pieces > ACDF_MAX_PORTAL_PIECES) {
-        report.add(7016, payload.at(0), "%u portals, %u maps of %u cells a side, %u pieces a side", h.portal_count,
-                   h.map_count, h.size, h.pieces);
+        report.add(7016, payload.at(0), "PORT has %u portals, %u maps of %u cells a side, %u pieces a side",
+                   h.portal_count, h.map_count, h.size, h.pieces);
         return false;
     }
     const u64 size = rows_at(h) + u64{rows} * (1 + u64{h.portal_count} * h.pieces * h.pieces);
@@ -68,14 +68,8 @@ bool are_sums(const u32* sums, u32 size) {
 
 } // namespace
 
-void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept {
-    if (!parts.visibility.header) {
-        // Errors of visibility cells are reported elsewhere.
-        if (report.verdict().errors == 0)
-            report.add(7016, payload.at(0), "there are portals, but no visibility cells");
-        return;
-    }
-    if (!check_portal_size(payload, parts.visibility.header->row_count, report)) return;
+void check_portals(const Payload& payload, u32 rows, Report& report, AcdfPortalTable& out) noexcept {
+    if (!check_portal_size(payload, rows, report)) return;
     const auto* header = reinterpret_cast<const AcdfPortals*>(payload.data);
     const auto* portals = reinterpret_cast<const AcdfPortal*>(header + 1);
     const auto* maps = reinterpret_cast<const AcdfPortalMap*>(portals + header->portal_count);
@@ -83,21 +77,24 @@ void check_portals(const Payload& payload, Report& report, Parts& parts) noexcep
     bool right = true;
     for (u32 i = 0; i < header->portal_count; ++i)
         if (!is_portal(portals[i], header->map_count)) {
-            report.add(7017, payload.at(sizeof *header + u64{i} * sizeof *portals), "portal %u", i);
+            report.add(7017, payload.at(sizeof *header + u64{i} * sizeof *portals),
+                       "portal %u has a corner or side out of range, or no such map", i);
             right = false;
         }
     for (u32 i = 0; i < header->map_count; ++i) {
         const u64 first = i * corners_of(*header);
         if (!is_map(maps[i])) {
-            report.add(7018, payload.at(maps_at(*header) + u64{i} * sizeof *maps), "map %u", i);
+            report.add(7018, payload.at(maps_at(*header) + u64{i} * sizeof *maps),
+                       "map %u of portals has axes that are not orthonormal, or a unit out of range", i);
             right = false;
         }
         if (!are_sums(sums + first, header->size)) {
-            report.add(7019, payload.at(sums_at(*header) + first * sizeof *sums), "map %u", i);
+            report.add(7019, payload.at(sums_at(*header) + first * sizeof *sums),
+                       "map %u of portals has cells of less than nothing", i);
             right = false;
         }
     }
-    if (right) parts.portals = {header, portals, maps, sums, payload.data + rows_at(*header)};
+    if (right) out = {header, portals, maps, sums, payload.data + rows_at(*header)};
 }
 
 } // namespace acdf

@@ -1,7 +1,7 @@
 // Files with visibility cells that break one rule each.
-#include "tests/lib/reader/check/cases.h"
-#include "tests/lib/reader/load.h"
 #include "tests/lib/reader/normals_builder.h"
+#include "tests/lib/visibility/cases.h"
+#include "tests/lib/visibility/load.h"
 
 #include <gtest/gtest.h>
 
@@ -116,20 +116,20 @@ std::vector<Case> visibility_cases() {
 namespace {
 
 TEST(VisibilityRules, whatIsAtTheirLimitsIsRight) {
-    expect_valid(visible_normals().encode());
-    expect_valid(chain_of_cells(64)());
-    expect_valid(regional_normals().encode());
-    expect_valid(with_cells([](VisibilitySpec& p) { // one cell
+    expect_visible(visible_normals().encode());
+    expect_visible(chain_of_cells(64)());
+    expect_visible(regional_normals().encode());
+    expect_visible(with_cells([](VisibilitySpec& p) { // one cell
         p.splits.clear();
         p.rows.resize(1);
     })());
-    expect_valid(with_cells([](VisibilitySpec& p) { // no column
+    expect_visible(with_cells([](VisibilitySpec& p) { // no column
         p.columns.clear();
         for (Bytes& row : p.rows) row.resize(1);
     })());
     NormalsSpec zipped = visible_normals();
     zipped.zlib = true;
-    expect_valid(zipped.encode());
+    expect_visible(zipped.encode());
 }
 
 } // namespace

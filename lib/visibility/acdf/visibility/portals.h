@@ -1,5 +1,5 @@
 /* Portals: rectangles that light comes through, as a position sees them. One freestanding header over
- * acdf/visibility.h, valid C99, C++17 and CUDA/HIP/SYCL, with the same contract (SPEC.md §13).
+ * acdf/visibility/cells.h, valid C99, C++17 and CUDA/HIP/SYCL, with the same contract (SPEC.md §13).
  *
  * All portals that face the same way share a map of the light of their hemisphere. Its axes are tangents along the
  * sides of the portals, bent into a square, so that a portal is an upright rectangle of the map from wherever it is
@@ -10,11 +10,11 @@
  *
  * The map is bent by t / (1 + |t|), not by the arc tangent of that paper: cells are about as even, and no machine
  * rounds it in another way. */
-#ifndef ACDF_PORTALS_H
-#define ACDF_PORTALS_H
+#ifndef ACDF_VISIBILITY_PORTALS_H
+#define ACDF_VISIBILITY_PORTALS_H
 
 #include <acdf/random.h>
-#include <acdf/visibility.h>
+#include <acdf/visibility/cells.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -1,5 +1,5 @@
 // Portals: samples through them, from files written by hand.
-#include "tests/lib/reader/local_loaded.h"
+#include "tests/lib/visibility/visible_loaded.h"
 
 #include <gtest/gtest.h>
 
@@ -23,13 +23,13 @@ TEST(Portals, SamplesHaveThePdfThatIsFoundForThem) {
     for (int kind = 0; kind < 2; ++kind, share = 0.25f) {
         NormalsSpec spec = windowed_normals();
         spec.cosine_share = share;
-        const LoadedLocal loaded(spec);
+        const LoadedVisible loaded(spec);
         ASSERT_TRUE(loaded.view().has_portals());
         std::mt19937_64 random(7);
         int seen = 0;
         for (const auto& n : kNormalsInside)
             for (const auto& x : kInside) {
-                const AcdfLocalPoint point = loaded.view().at(x, n);
+                const AcdfVisiblePoint point = loaded.view().at(x, n);
                 seen += point.portals;
                 for (int i = 0; i < 300; ++i) {
                     const double u0 = double(random() >> 11) * 0x1p-53, u1 = double(random() >> 11) * 0x1p-53;
@@ -46,7 +46,7 @@ TEST(Portals, SamplesHaveThePdfThatIsFoundForThem) {
 
 /// Directions that a row never samples are sampled through no portal alone, and what a row samples stays so.
 TEST(Portals, NothingThatANormalSeesIsLost) {
-    const LoadedLocal loaded(windowed_normals());
+    const LoadedVisible loaded(windowed_normals());
     std::mt19937_64 random(8);
     std::normal_distribution<double> normal;
     for (int i = 0; i < 100000; ++i) {
@@ -78,7 +78,7 @@ struct Histogram {
 };
 
 /// The pdf in bins of equal solid angle, by midpoints of 16 x 16 parts of each.
-Histogram expected_of(const acdf::LocalEnvironmentView& view, const AcdfLocalPoint& point) {
+Histogram expected_of(const acdf::VisibleLocalView& view, const AcdfVisiblePoint& point) {
     constexpr int parts = 16;
     Histogram out;
     for (int i = 0; i < Histogram::rows * parts; ++i)
@@ -94,11 +94,11 @@ Histogram expected_of(const acdf::LocalEnvironmentView& view, const AcdfLocalPoi
 
 /// Chi square over bins of enough samples; the pdf integrates to 1.
 TEST(Portals, DirectionsFallWhereThePdfSays) {
-    const LoadedLocal loaded(windowed_normals());
+    const LoadedVisible loaded(windowed_normals());
     std::mt19937_64 random(9);
     const struct { int position, normal; } cases[] = {{0, 0}, {1, 1}, {3, 3}, {6, 0}};
     for (const auto& c : cases) {
-        const AcdfLocalPoint point = loaded.view().at(kInside[c.position], kNormalsInside[c.normal]);
+        const AcdfVisiblePoint point = loaded.view().at(kInside[c.position], kNormalsInside[c.normal]);
         ASSERT_GT(point.portals, 0) << c.position;
         const Histogram expected = expected_of(loaded.view(), point);
         double whole = 0.0;
@@ -131,8 +131,8 @@ TEST(Portals, DirectionsFallWhereThePdfSays) {
 /// Strata of random numbers stay together: next to each other, u sample directions of the same piece or of the
 /// next.
 TEST(Portals, NumbersAreClampedAndAtTheEndsSafe) {
-    const LoadedLocal loaded(windowed_normals());
-    const AcdfLocalPoint point = loaded.view().at(kInside[0], kNormalsInside[0]);
+    const LoadedVisible loaded(windowed_normals());
+    const AcdfVisiblePoint point = loaded.view().at(kInside[0], kNormalsInside[0]);
     for (double u0 : {0.0, 1.0, -1.0, 2.0, std::nan(""), 0.16, 0.16015625})
         for (double u1 : {0.0, 1.0, -1.0, 2.0, std::nan("")}) {
             const acdf::DirectionSample s = loaded.view().sample(point, u0, u1);
@@ -149,18 +149,18 @@ TEST(Portals, NumbersAreClampedAndAtTheEndsSafe) {
 TEST(Portals, NothingIsSampledInCellsWithoutLight) {
     NormalsSpec spec = windowed_normals();
     for (PortalMapSpec& map : spec.portals->maps) map.light = {0, 0, 0, 0, 0, 5, 7, 0, 0, 0, 9, 0, 0, 0, 0, 0};
-    const LoadedLocal loaded(spec);
+    const LoadedVisible loaded(spec);
     int seen = 0;
     for (const auto& n : kNormalsInside)
         for (const auto& x : kInside) {
-            const AcdfLocalPoint point = loaded.view().at(x, n);
+            const AcdfVisiblePoint point = loaded.view().at(x, n);
             if (point.portals == 0) continue;
             ++seen;
-            const double row = point.place.portals.of_row;
+            const double row = point.seen.of_row;
             for (double u0 : {row, row + 0x1p-53, 0.5 + 0.5 * row, 0.75 + 0.25 * row, 1.0 - 0x1p-24, 1.0})
                 for (double u1 : {0.0, 0x1p-30, 0.25, 0.5, 0.75, 1.0 - 0x1p-53, 1.0}) {
                     const acdf::DirectionSample s = loaded.view().sample(point, u0, u1);
-                    const double of_row = row * acdf_local_row_pdf(&loaded.view().data(), &point, s.direction);
+                    const double of_row = row * acdf_visible_rows_pdf(&loaded.view().data(), &point, s.direction);
                     EXPECT_GT(s.pdf, 1.001 * of_row) << u0 << ' ' << u1;
                 }
         }
@@ -175,24 +175,24 @@ TEST(Portals, RoundingIsNoLight) {
     spec.portals->maps[0].unit = 1e30f;
     spec.portals->maps[0].light = {0, 0, 1000000007, 0, 0, 0, 0, 0, 3000000001, 0, 0, 0, 0, 0, 0, 0};
     spec.portals->rows = std::vector<Bytes>(4, Bytes(5, 250));
-    const LoadedLocal loaded(spec);
+    const LoadedVisible loaded(spec);
     for (int i = 0; i < 100; ++i) {
         const float x[] = {0, -0.002f * static_cast<float>(i), 1};
         EXPECT_EQ(loaded.view().at(x, kNormalsInside[0]).portals, 0) << i;
     }
     spec.portals->maps[0].light[10] = 1;
     const float x[] = {0, 0, 1};
-    EXPECT_EQ(LoadedLocal(spec).view().at(x, kNormalsInside[0]).portals, 1);
+    EXPECT_EQ(LoadedVisible(spec).view().at(x, kNormalsInside[0]).portals, 1);
 }
 
 /// A position that samples by its row alone, one behind a wall, one outside, and a normal alone see no portals.
 TEST(Portals, PositionsWithoutAPortalSampleTheirRow) {
-    const LoadedLocal loaded(windowed_normals()), rows(visible_normals());
+    const LoadedVisible loaded(windowed_normals()), rows(visible_normals());
     const struct {
         float x[3], n[3];
     } cases[] = {{{2, 1.5f, 1}, {0, 0, 1}}, {{0, 0, 1}, {-1, -1, 0}}, {{9, 0, 1}, {1, 0, 0}}};
     for (const auto& c : cases) {
-        const AcdfLocalPoint point = loaded.view().at(c.x, c.n), row = rows.view().at(c.x, c.n);
+        const AcdfVisiblePoint point = loaded.view().at(c.x, c.n), row = rows.view().at(c.x, c.n);
         EXPECT_EQ(point.portals, 0);
         const acdf::DirectionSample a = loaded.view().sample(point, 0.3, 0.7),
                                     b = rows.view().sample(row, 0.3, 0.7);

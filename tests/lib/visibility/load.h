@@ -1,0 +1,41 @@
+// Loading and validating bytes with their visibility cells.
+#pragma once
+
+#include "tests/lib/reader/load.h"
+#include "visibility/check.h"
+
+#include <acdf/visibility/visibility.h>
+
+namespace acdf_test {
+
+/// As load, and makes the view of a local environment.
+inline acdf::Status load_visible(const Bytes& bytes, const acdf::Limits& limits = {}) {
+    const Exact exact(bytes);
+    acdf::File file;
+    acdf::VisibleLocalView view;
+    const acdf::Status status = acdf::File::from_memory(exact.data(), exact.size(), file, limits);
+    return status.ok() ? acdf::VisibleLocalView::of(file, view) : status;
+}
+
+/// What the reader finds, and where that is nothing, what its cells and portals break.
+inline Findings visible_findings(const Bytes& bytes) {
+    Findings out = findings(bytes);
+    const Exact exact(bytes);
+    acdf::File file;
+    if (!acdf::File::from_memory(exact.data(), exact.size(), file).ok()) return out;
+    std::ostringstream text;
+    acdf::validate_visibility(*file.get(), [&](const acdf::Finding& finding) {
+        out.rules.insert(finding.number);
+        out.last_offset = finding.offset;
+        text << finding.number << " at " << finding.offset << ": " << finding.detail << '\n';
+    });
+    out.text += text.str();
+    return out;
+}
+
+inline void expect_visible(const Bytes& file) {
+    const Findings found = visible_findings(file);
+    EXPECT_TRUE(found.rules.empty()) << found.text;
+}
+
+} // namespace acdf_test
