@@ -1,5 +1,5 @@
-# Installs the reader, the rooms beside it and the builder, components `reader`, `batch`, `product`, `shader` and `builder`: headers
-# and a static library each, one CMake package and a pkg-config file each. All need the first. As shared libraries, one of the reader
+# Installs the reader, the rooms beside it and the builder, components `reader`, `batch`, `curves`, `product`, `shader` and `builder`: headers
+# and a static library each, one CMake package and a pkg-config file each. All need the first, the builder `curves`, too. As shared libraries, one of the reader
 # with the rooms and one of the builder: `runtime`, and what links to them, `shared`.
 # The program: `tools`, its pages and completions `manual`. The Python package: `python`.
 # Everything is relocatable: the prefix may be moved or staged after installation.
@@ -57,9 +57,11 @@ endif()
 configure_file(${PROJECT_SOURCE_DIR}/lib/reader/acdf.pc.in ${PROJECT_BINARY_DIR}/acdf.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/acdf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT reader)
 set(ACDF_PC_SUMMARY_batch "many calls at once")
+set(ACDF_PC_SUMMARY_curves "files of the paper's own fits")
 set(ACDF_PC_SUMMARY_product "light, cosine and BRDF at once")
 set(ACDF_PC_SUMMARY_shader "tables for shaders")
 set(ACDF_PC_NEEDS_batch "acdf, libhwy")
+set(ACDF_PC_NEEDS_curves acdf)
 set(ACDF_PC_NEEDS_product acdf)
 set(ACDF_PC_NEEDS_shader acdf)
 foreach(room IN LISTS ACDF_ROOMS)

@@ -11,6 +11,7 @@
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
 
+#include <acdf/curves/curves.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -84,9 +85,11 @@ TreeCounts count_tree(const File& file) {
             std::uint64_t{1};
         return counts;
     }
-    for (std::uint32_t at = 0; at < file.tree_units();) {
+    std::uint32_t units;
+    const std::uint8_t* tree = acdf_curves_tree(file.c_file(), &units);
+    for (std::uint32_t at = 0; at < units;) {
         AcdfCurve curve;
-        const std::size_t next = acdf_curve_decode(file.tree(), at, &curve);
+        const std::size_t next = acdf_curve_decode(tree, at, &curve);
         ++counts.curves;
         for (std::uint32_t i = 0; i < curve.segments; ++i)
             if (acdf_curve_link(&curve, i) == 0) ++counts.cells;

@@ -23,6 +23,7 @@
 #include "tools/commands.h"
 
 #include <CLI/CLI.hpp>
+#include <acdf/curves/curves.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -208,7 +209,7 @@ double gain(const builder::Local& result) {
 nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const builder::Local& result) const {
     const builder::LocalAccuracy& a = result.accuracy;
     File file;
-    File::from_memory(result.bytes.data(), result.bytes.size(), file);
+    File::from_memory(result.bytes.data(), result.bytes.size(), file, with_curves());
     const AcdfNormalRows* const rows = file.local().data().rows_of_normals;
     nlohmann::ordered_json out = {
         {"source", source},

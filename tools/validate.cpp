@@ -10,6 +10,7 @@
 #include "rules/rules.h"
 #include "rules/signatures.h"
 
+#include <acdf/curves/curves.h>
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
@@ -43,11 +44,12 @@ const char* severity_name(Severity severity) { return severity == Severity::erro
 Report validate_file(const std::string& path) {
     Report report{path, {}, {}};
     const std::vector<std::uint8_t> bytes = read_acdf_bytes(path);
-    report.verdict = validate(bytes.data(), bytes.size(), [&](const Finding& finding) {
+    const auto keep = [&](const Finding& finding) {
         const bool foreign = finding.number == 2002;
         report.faults.push_back({find_rule(finding.number), finding.offset,
                                  foreign ? what_is_it(bytes.data(), bytes.size()) : finding.detail});
-    });
+    };
+    report.verdict = validate(bytes.data(), bytes.size(), keep, with_curves());
     return report;
 }
 

@@ -24,6 +24,7 @@ acdf::LoadOptions of(const AcdfLoadOptions& from) {
     if (from.max_inflated_bytes > 0) options.limits.max_inflated_bytes = from.max_inflated_bytes;
     options.tables = !from.plain;
     options.allocator = from.allocator;
+    options.curves = from.curves;
     return options;
 }
 
@@ -98,6 +99,7 @@ int acdf_indexed(const AcdfFile* file, AcdfIndexed* out) {
 
 int acdf_memory(const AcdfFile* file, AcdfMove* moves) {
     int count = 0;
+    if (file->curves()) return 0;
     moves[count++] = {file->bytes, static_cast<size_t>(file->size), nullptr};
     for (int i = 1; i < ACDF_MAX_MOVES; ++i)
         if (file->memory[i].data) moves[count++] = {file->memory[i].data, file->memory[i].bytes, nullptr};

@@ -130,29 +130,30 @@ void take_parts(const Parts& parts, AcdfFile& file) noexcept {
     file.description = parts.description;
     file.axes = parts.axes;
     file.bins = parts.bins;
-    file.tree = parts.tree;
-    file.tree_units = parts.tree_units;
     file.partner = parts.partner;
     file.metadata = parts.metadata;
     file.metadata_count = parts.metadata_count;
     file.payloads = parts.payloads;
     if (file.kind() != ACDF_KIND_ENVIRONMENT) return;
-    file.environment.tree = parts.tree;
-    file.environment.root = parts.bins ? parts.bins[0].root : 0;
     file.environment.columns = parts.axes[ACDF_AXIS_PHI].resolution;
     file.environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
     file.environment.total = parts.description->total;
     file.environment.parameterization = parts.description->parameterization;
     file.environment.partner = parts.partner;
+    if (parts.bins) file.environment.root = parts.bins[0].root;
 }
 
 // Checks the bytes of a file, and makes its view. On failure the caller gives its memory back.
 bool load(const LoadOptions& options, AcdfFile& file, Status& status) noexcept {
     Parts parts;
-    check(file.bytes, file.size, options.limits, first_error, &status, parts, options.allocator);
+    check(file.bytes, file.size, options, first_error, &status, parts);
     file.memory[1] = parts.inflated;
     if (!status.ok()) return false;
     take_parts(parts, file);
+    if (file.curves()) {
+        file.environment.curves = options.curves;
+        file.environment.tree = parts.payloads.of[chunk_tree].data;
+    }
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (file.kind() == ACDF_KIND_INDEXED) {
         file.indexed = make_indexed(parts, options.tables, options.allocator, file.memory[2]);
@@ -247,8 +248,6 @@ const AcdfDescription& File::description() const noexcept { return *opened_->des
 const AcdfAxis& File::axis(u32 i) const noexcept { return opened_->axes[i]; }
 const AcdfBin& File::bin(u32 i) const noexcept { return opened_->bins[i]; }
 bool File::has_bins() const noexcept { return opened_->bins != nullptr; }
-const u8* File::tree() const noexcept { return opened_->tree; }
-u32 File::tree_units() const noexcept { return opened_->tree_units; }
 u64 File::size() const noexcept { return opened_->size; }
 const AcdfPartner* File::partner() const noexcept { return opened_->partner; }
 u64 File::table_bytes() const noexcept { return opened_->table_bytes(); }

@@ -24,7 +24,7 @@ NEWER = {
     r"\bcxx_std_26\b": "3.25", r"\bcxx_std_23\b": "3.20",
 }
 FILES = ["CMakeLists.txt", "lib/CMakeLists.txt", "lib/install.cmake", "lib/acdfConfig.cmake.in", "lib/packages.cmake",
-         "lib/reader/CMakeLists.txt", "lib/batch/CMakeLists.txt", "lib/product/CMakeLists.txt", "lib/shader/CMakeLists.txt",
+         "lib/reader/CMakeLists.txt", "lib/batch/CMakeLists.txt", "lib/curves/CMakeLists.txt", "lib/product/CMakeLists.txt", "lib/shader/CMakeLists.txt",
          "lib/compress/CMakeLists.txt", "lib/build/CMakeLists.txt", "lib/python/CMakeLists.txt"]
 
 
@@ -69,7 +69,7 @@ def main(root):
         for line, what, since in newer((root / name).read_text()):
             print(f"{name}:{line}: {what} came with CMake {since}")
             count += 1
-    for room in ("reader", "batch", "product", "compress", "build"):
+    for room in ("reader", "batch", "curves", "product", "compress", "build"):
         for path in sorted((root / "lib" / room).rglob("*.*")):
             if path.suffix not in (".h", ".cpp") or path.name.endswith("_posix.cpp"):
                 continue

@@ -44,7 +44,7 @@ WITH = {"charconv": {"system_error"}, "iostream": {"istream", "ostream", "string
         "gtest/gtest.h": {"string", "vector", "memory", "ostream", "iostream", "sstream", "tuple", "type_traits", "map", "set",
                           "functional", "limits", "utility", "atomic", "mutex", "cstring", "cstdio"}}
 OF = {name: header for header, names in HEADERS.items() for name in names.split()}
-ROOTS = ("", "lib", "lib/reader", "lib/batch", "lib/product", "lib/shader", "format", "tools")
+ROOTS = ("", "lib", "lib/reader", "lib/batch", "lib/curves", "lib/product", "lib/shader", "format", "tools")
 
 
 def code(text):

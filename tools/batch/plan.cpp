@@ -10,6 +10,7 @@
 #include "tools/cli/sequence.h"
 #include "tools/commands.h"
 
+#include <acdf/curves/curves.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <cstdlib>
@@ -37,11 +38,12 @@ AcdfKind file_kind(const BatchJob& job) {
 
 std::string first_fault(const std::vector<std::uint8_t>& bytes) {
     std::string fault;
-    validate(bytes.data(), bytes.size(), [&](const Finding& finding) {
+    const auto keep = [&](const Finding& finding) {
         if (code_of(finding.number) == ErrorCode::none) return true;
         fault = "rule " + std::to_string(finding.number) + ": " + finding.detail;
         return false;
-    });
+    };
+    validate(bytes.data(), bytes.size(), keep, with_curves());
     return fault;
 }
 
@@ -96,7 +98,7 @@ std::string why_due(const std::vector<std::uint8_t>& bytes, const BatchJob& job,
                std::to_string(header.version_minor);
     if (std::string fault = first_fault(bytes); !fault.empty()) return "its output is not valid (" + fault + ")";
     File file;
-    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
+    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file, with_curves()); !status.ok())
         return std::string("its output cannot be read (") + status.message + ")";
     if (file.kind() != file_kind(job)) return "its output is of kind " + build::kind_name(file.kind());
     if (const std::string had = value_of(file, "fit.options"); had != option_text)

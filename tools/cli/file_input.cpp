@@ -5,6 +5,7 @@
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/layout.h>
 
 #include <cerrno>
@@ -82,7 +83,7 @@ std::vector<std::uint8_t> read_acdf_bytes(const std::string& path) {
 LoadedFile load_file(const std::string& path) {
     LoadedFile loaded;
     loaded.bytes = read_acdf_bytes(path);
-    const Status status = File::from_memory(loaded.bytes.data(), loaded.bytes.size(), loaded.file);
+    const Status status = File::from_memory(loaded.bytes.data(), loaded.bytes.size(), loaded.file, with_curves());
     if (status.ok()) return loaded;
     if (status.rule == 2002)
         throw Failure(shown(path) + ": " + what_is_it(loaded.bytes.data(), loaded.bytes.size()));
@@ -93,7 +94,7 @@ LoadedFile load_file(const std::string& path) {
 
 void check_reads_back(const std::uint8_t* data, std::size_t size) {
     File file;
-    if (const Status status = File::from_memory(data, size, file); !status.ok())
+    if (const Status status = File::from_memory(data, size, file, with_curves()); !status.ok())
         throw Failure(std::string("cannot read back what was written: ") + status.message);
 }
 

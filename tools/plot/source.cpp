@@ -11,6 +11,7 @@
 #include "tools/plot/panels.h"
 
 #include <CLI/CLI.hpp>
+#include <acdf/curves/tree.h>
 
 #include <algorithm>
 #include <cstdio>

@@ -74,6 +74,7 @@ typedef struct AcdfLoadOptions {
     uint64_t max_inflated_bytes; /* of compressed chunks together; 0: 1 GiB */
     int plain;                   /* 1: without runtime tables */
     AcdfAllocator allocator;     /* of what the open file keeps, itself too; all null: the C library's */
+    const AcdfCurves* curves;    /* acdf_curves() reads files of curves; null: they are refused as unsupported */
 } AcdfLoadOptions;
 AcdfFile* acdf_open_with(const char* path, const AcdfLoadOptions* options, AcdfError* error);
 AcdfFile* acdf_from_memory_with(const void* data, size_t size, const AcdfLoadOptions* options, AcdfError* error);
@@ -95,7 +96,7 @@ int acdf_table(const AcdfFile* file, AcdfTable* out);
 int acdf_indexed(const AcdfFile* file, AcdfIndexed* out);
 
 /* The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how many
- * there are (acdf/moved.h). */
+ * there are (acdf/moved.h); 0 of a file of curves, whose views cannot be moved. */
 int acdf_memory(const AcdfFile* file, AcdfMove* moves);
 #endif
 

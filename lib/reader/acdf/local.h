@@ -107,6 +107,7 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_sample(const AcdfLocal* local
 ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[3]) {
     AcdfNormalBins bins;
     AcdfLocalPoint point;
+    ACDF_RETURN_CURVES(&local->environment, local_irradiance(local, normal));
     acdf_local_at(local, normal, &point);
     if (point.what == ACDF_LOCAL_ROWS && acdf_partner_records(local->partner) &&
         acdf_local_bins(local, normal, &bins)) { /* shares hold the light that is left to the file */
@@ -118,10 +119,7 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
     }
     if (point.what == ACDF_LOCAL_ROWS)
         return acdf_clamp(local->environment.total * point.sum / point.length, 0.0, 0x1.fffffffffffffp1023);
-    if (point.what == ACDF_LOCAL_NOTHING || !acdf_local_bins(local, normal, &bins)) return 0.0;
-    if (local->rows_of_normals || point.by.root == local->environment.root) return local->environment.total;
-    return acdf_clamp(local->environment.total * (double)local->bins[acdf_nearest_bin(&bins)].share, 0.0,
-                      0x1.fffffffffffffp1023); /* a file may have a total and a share whose product is too large */
+    return point.what == ACDF_LOCAL_NOTHING ? 0.0 : local->environment.total;
 }
 
 /* Which share of the samples to take from the file at a normal, in (0, 1]; interpolated between bins. */
@@ -142,7 +140,7 @@ ACDF_FN int acdf_local_stored(const AcdfLocal* local, const float normal[3]) {
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
     return point.what == ACDF_LOCAL_ROWS ||
-           (point.what == ACDF_LOCAL_TREE && !local->rows_of_normals && point.by.root != local->environment.root);
+           (point.what == ACDF_LOCAL_TREE && point.by.root != local->environment.root);
 }
 
 #ifdef __cplusplus

@@ -20,12 +20,12 @@ typedef struct AcdfLocal {
     const AcdfPartner* partner;            /* null: to be used alone */
     AcdfVisibilityTable visibility;        /* its header is null where there are no visibility cells */
     AcdfPortalTable portals;               /* its header is null where there are none */
-    const AcdfNormalRows* rows_of_normals; /* one tree of halvings; null: curves, each bin a tree of its own */
+    const AcdfNormalRows* rows_of_normals; /* one tree of halvings; null: curves, a tree for each bin */
 } AcdfLocal;
 
 ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {
-    if (local->subdivisions > 0) return acdf_octahedral_bins(local->subdivisions, normal, out);
-    return acdf_latlong_bins(local->columns, local->rows, normal, out);
+    ACDF_RETURN_CURVES(&local->environment, local_bins(local, normal, out));
+    return acdf_octahedral_bins(local->subdivisions, normal, out);
 }
 
 /* What serves a normal: nothing, a tree of its own (or the environment's), or rows of a tree of halvings. Made once

@@ -49,11 +49,11 @@ ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint
         acdf_halved_ranges(cell.box, range);
         return acdf_local_row_share(local, point, tile) * cell.share;
     }
-    if (env->halved) {
-        AcdfSpan steps[2];
-        return acdf_environment_halved_cell(env, square, steps, range);
+    {
+        const AcdfEnvironment tree = acdf_local_tree(local, point);
+        AcdfStratum strata[2];
+        return acdf_environment_find_square(&tree, square, range, strata);
     }
-    return acdf_tree_find(env->tree, point->by.root, square, range, 0);
 }
 
 /* The pdf of what rows, or a tree, sample, in a direction. */

@@ -8,14 +8,6 @@
 extern "C" {
 #endif
 
-/* The bin of the largest weight. */
-ACDF_FN uint32_t acdf_nearest_bin(const AcdfNormalBins* bins) {
-    int i, nearest = 0;
-    for (i = 1; i < bins->count; ++i)
-        if (bins->weight[i] > bins->weight[nearest]) nearest = i;
-    return bins->bin[nearest];
-}
-
 /* Begins a point: nothing serves it. */
 ACDF_INLINE void acdf_local_nothing(const float normal[3], AcdfLocalPoint* out) {
     out->what = ACDF_LOCAL_NOTHING;
@@ -36,18 +28,7 @@ ACDF_INLINE double acdf_local_length(const AcdfLocal* local, const float normal[
     return (double)local->subdivisions / (fabs(x) + fabs(y) + fabs(z)) * sqrt(x * x + y * y + z * z);
 }
 
-/* acdf_local_at of trees of curves: that of the nearest bin. */
-ACDF_INLINE void acdf_local_tree_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
-    AcdfNormalBins bins;
-    const AcdfBin* bin;
-    acdf_local_nothing(normal, out);
-    if (!acdf_local_bins(local, out->surface, &bins)) return;
-    bin = &local->bins[acdf_nearest_bin(&bins)];
-    if (bin->root == ACDF_NO_ROOT) acdf_local_by_tree(local->environment.root, out);
-    else if (bin->share > 0.0f) acdf_local_by_tree(bin->root, out);
-}
-
-/* acdf_local_at of one tree of halvings: bins are corners of an octahedron. */
+/* Finds what serves a normal: bins are corners of an octahedron. */
 ACDF_INLINE void acdf_local_rows_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     AcdfNormalBins bins;
     double weight[ACDF_NORMALS_MIXED];
@@ -73,8 +54,8 @@ ACDF_INLINE void acdf_local_rows_at(const AcdfLocal* local, const float normal[3
 
 /* Finds what serves a normal. */
 ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
-    if (local->rows_of_normals) acdf_local_rows_at(local, normal, out);
-    else acdf_local_tree_at(local, normal, out);
+    ACDF_RETURN_CURVES(&local->environment, local_at(local, normal, out));
+    acdf_local_rows_at(local, normal, out);
 }
 
 /* Finds what serves a normal at a position of the scene by rows alone, whatever comes through portals. */

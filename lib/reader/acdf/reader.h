@@ -26,6 +26,7 @@
 #include <cstddef>
 #include <cstdint>
 
+struct AcdfCurves;
 struct AcdfFile;
 #ifndef ACDF_ENVIRONMENT_ONLY
 struct AcdfMove;
@@ -82,6 +83,9 @@ struct LoadOptions {
     /// file is gone. What is needed for a moment, while bytes are checked, is the C library's, but for the nodes of
     /// a tree of halvings.
     AcdfAllocator allocator = {};
+    /// What reads files of the fits `cdf`, `pdf` and `uniform`: acdf_curves() of acdf/curves/curves.h. Null: such
+    /// files are refused as `unsupported`.
+    const AcdfCurves* curves = nullptr;
 };
 
 /// A key or value of the metadata: UTF-8, not terminated.
@@ -117,10 +121,9 @@ public:
     const AcdfAxis& axis(std::uint32_t i) const noexcept;
     const AcdfBin& bin(std::uint32_t i) const noexcept;
     bool has_bins() const noexcept;
-    /// Chunk TREE, and its size in units of two bytes, in which offsets in it are counted.
-    const std::uint8_t* tree() const noexcept;
-    std::uint32_t tree_units() const noexcept;
     std::uint64_t size() const noexcept;
+    /// The same file for functions in C.
+    const AcdfFile* c_file() const noexcept { return opened_; }
     /// What the file is to be combined with; null: it is to be used alone.
     const AcdfPartner* partner() const noexcept;
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
@@ -145,7 +148,7 @@ public:
     /// The view of an environment of several maps: only where kind() == ACDF_KIND_INDEXED.
     IndexedEnvironment indexed() const noexcept;
     /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
-    /// many there are (acdf/moved.h).
+    /// many there are (acdf/moved.h); 0 of a file of curves, whose views cannot be moved.
     int memory(AcdfMove* moves) const noexcept;
 #endif
 

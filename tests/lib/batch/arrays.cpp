@@ -1,5 +1,6 @@
 // The symbols of acdf/batch/batch_c.h give what those of acdf/linked.h give, and nothing for files of other kinds.
 #include "tests/lib/batch/batches.h"
+#include "tests/lib/curves/open.h"
 
 #include <acdf/acdf.h>
 #include <acdf/batch/batch_c.h>
@@ -15,7 +16,8 @@ constexpr std::size_t kCount = 1000;
 using File = std::unique_ptr<AcdfFile, decltype(&acdf_close)>;
 
 File golden(const char* name) {
-    return {acdf_open((std::string(ACDF_TEST_DIR "/golden/v1.0/") + name + ".acdf").c_str(), nullptr), acdf_close};
+    return {acdf_test::open_in_c((std::string(ACDF_TEST_DIR "/golden/v1.0/") + name + ".acdf").c_str()),
+            acdf_close};
 }
 
 const double* flat(const std::vector<Pair>& pairs) { return pairs[0].data(); }

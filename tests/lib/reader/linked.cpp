@@ -1,5 +1,8 @@
 // The symbols of acdf/linked.h give what the inline functions give, and nothing for files of other kinds.
+#include "tests/lib/curves/open.h"
+
 #include <acdf/acdf.h>
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -26,9 +29,9 @@ constexpr std::size_t kCount = 1000, kEach = 7;
 
 /// The same file through both interfaces, random numbers, and directions all over the sphere.
 struct Both {
-    explicit Both(const std::string& path) : handle(acdf_open(path.c_str(), nullptr), acdf_close), u(2 * kCount) {
+    explicit Both(const std::string& path) : handle(acdf_test::open_in_c(path.c_str()), acdf_close), u(2 * kCount) {
         EXPECT_TRUE(handle) << path;
-        EXPECT_TRUE(acdf::File::open(path.c_str(), file).ok());
+        EXPECT_TRUE(acdf::File::open(path.c_str(), file, acdf::with_curves()).ok());
         for (std::size_t i = 0; i < kCount; ++i) {
             u[2 * i] = (static_cast<double>(i) + 0.5) / kCount;
             u[2 * i + 1] = std::fmod(static_cast<double>(i) * 0.6180339887498949, 1.0);
@@ -278,6 +281,7 @@ TEST(Memory, ofTheCallersAllocatorAndBackToIt) {
         Ledger ledger;
         AcdfLoadOptions options = {};
         options.allocator = ledger.allocator();
+        options.curves = acdf_curves();
         AcdfError error;
         AcdfFile* file = acdf_open_with(golden(name).c_str(), &options, &error);
         ASSERT_TRUE(file) << error.message;
@@ -294,7 +298,7 @@ TEST(Memory, ofTheCallersAllocatorAndBackToIt) {
 
 TEST(Memory, noOptionsAreTheDefault) {
     AcdfError error;
-    const Handle opened(acdf_open_with(golden("zlib").c_str(), nullptr, &error), acdf_close);
+    const Handle opened(acdf_open_with(golden("halvings_zlib").c_str(), nullptr, &error), acdf_close);
     ASSERT_TRUE(opened) << error.message;
     const Handle loaded(acdf_from_memory_with(acdf_header(opened.get()), acdf_size(opened.get()), nullptr, &error),
                         acdf_close);
@@ -308,6 +312,7 @@ TEST(Memory, thatIsNeverReleasedIsTheCallersToFree) {
     Ledger ledger;
     AcdfLoadOptions options = {};
     options.allocator = ledger.allocator();
+    options.curves = acdf_curves();
     options.allocator.release = nullptr;
     acdf_close(acdf_open_with(golden("zlib").c_str(), &options, nullptr));
     EXPECT_GE(ledger.out.size(), 2u);
@@ -321,8 +326,9 @@ TEST(Memory, thatEndsIsAnErrorAndNotALeak) {
         ledger.left = left;
         acdf::LoadOptions options;
         options.allocator = ledger.allocator();
+        options.curves = acdf_curves();
         acdf::File file;
-        const acdf::Status status = acdf::File::open(golden("zlib").c_str(), file, options);
+        const acdf::Status status = acdf::File::open(golden("zlib").c_str(), file, acdf::with_curves(options));
         if (left < 2) EXPECT_EQ(status.code, acdf::ErrorCode::out_of_memory) << left; // bytes; inflated chunks
         else ++opened;                                                                // tables are only for speed
         file = acdf::File();
@@ -330,6 +336,7 @@ TEST(Memory, thatEndsIsAnErrorAndNotALeak) {
         AcdfLoadOptions c_options = {};
         ledger.left = left;
         c_options.allocator = ledger.allocator();
+        options.curves = acdf_curves();
         acdf_close(acdf_open_with(golden("zlib").c_str(), &c_options, nullptr));
         EXPECT_TRUE(ledger.out.empty()) << left;
     }
@@ -345,8 +352,8 @@ TEST(Memory, bothInterfacesUseBytesInPlaceAtTheSameAlignment) {
         const unsigned char* data = room + shift;
         std::memcpy(room + shift, bytes.data(), bytes.size());
         acdf::File file;
-        ASSERT_TRUE(acdf::File::from_memory(data, bytes.size(), file).ok());
-        const Handle handle(acdf_from_memory(data, bytes.size(), nullptr), acdf_close);
+        ASSERT_TRUE(acdf::File::from_memory(data, bytes.size(), file, acdf::with_curves()).ok());
+        const Handle handle(acdf_test::from_memory_in_c(data, bytes.size()), acdf_close);
         ASSERT_TRUE(handle);
         const bool in_place = shift % 8 == 0;
         EXPECT_EQ(static_cast<const void*>(&file.header()) == data, in_place) << shift;

@@ -23,6 +23,7 @@ file(MAKE_DIRECTORY ${WORK})
 run(ignored ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/installed --component reader)
 file(RENAME ${WORK}/installed ${WORK}/prefix)
 refuse("builder" ${configure} -B ${WORK}/without) # the reader alone has none
+run(ignored ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component curves) # what the builder needs
 run(ignored ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component builder)
 
 # Three headers, each alone; nothing of the library's own is installed with them.

@@ -1,8 +1,9 @@
-// A light file by each room beside the reader: rooms LOCAL.acdf.
+// A light file by each room beside the reader, and one of curves: rooms LOCAL.acdf CURVES.acdf.
 #if __has_include(<acdf/batch/batch.h>)
 #include <acdf/batch/batch.h>
 #define BATCH 1
 #endif
+#include <acdf/curves/curves.h>
 #include <acdf/product/product.h>
 #include <acdf/reader.h>
 #include <acdf/shader/tables.h>
@@ -27,8 +28,12 @@ acdf::ProductSample straight_up(const float* wo, double, double) {
 } // namespace
 
 int main(int argc, char** argv) {
-    acdf::File file;
-    if (argc != 2 || !acdf::File::open(argv[1], file).ok() || file.kind() != ACDF_KIND_LOCAL) return 1;
+    acdf::File file, of_curves;
+    if (argc != 3 || acdf::File::open(argv[2], of_curves).code != acdf::ErrorCode::unsupported ||
+        !acdf::File::open(argv[2], of_curves, acdf::with_curves()).ok() ||
+        !(of_curves.environment().sample(0.3, 0.4).pdf > 0.0f))
+        return 1;
+    if (!acdf::File::open(argv[1], file).ok() || file.kind() != ACDF_KIND_LOCAL) return 1;
     const acdf::LocalEnvironmentView light = file.local();
     const float up[3] = {0.0f, 0.0f, 1.0f};
     const acdf::ProductSampler sampler(light.data(), acdf::Lobe(Cosine(), straight_up, cosine_pdf));
