@@ -18,7 +18,7 @@ class Export : public testing::Test {
 protected:
     Folder folder;
     const std::string file = folder / "sky.acdf", text = folder / "sky.txt", tables = folder / "sky.bin";
-    void SetUp() override { write_bytes(file, small_environment()); }
+    void SetUp() override { write_bytes(file, small_halvings()); }
 
     std::vector<std::uint32_t> words() const {
         File opened;
