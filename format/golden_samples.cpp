@@ -2,6 +2,7 @@
 
 #include "visibility/visible_view.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/indexed/views.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -110,7 +111,8 @@ std::string golden_samples(const std::string& name, const std::vector<std::uint8
     acdf::File file;
     acdf::LoadOptions walked; // as SPEC.md says it, to the last bit
     walked.tables = false;
-    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, walked);
+    const acdf::Status status =
+        acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves(walked));
     if (!status.ok()) throw std::runtime_error(name + ": " + status.message);
     if (file.kind() == ACDF_KIND_LOCAL) {
         const acdf::VisibleLocalView view = acdf::visible_view(file);

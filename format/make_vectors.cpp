@@ -6,6 +6,7 @@
 #include "visibility/visible_view.h"
 #include "write_file.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/indexed/views.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -323,7 +324,7 @@ int main(int argc, char** argv) try {
         const std::string path = argv[i], name = path.substr(path.rfind('/') + 1);
         acdf::LoadOptions walked; // as SPEC.md says it, to the last bit
         walked.tables = false;
-        const acdf::Status status = acdf::File::open(path.c_str(), file, walked);
+        const acdf::Status status = acdf::File::open(path.c_str(), file, acdf::with_curves(walked));
         if (!status.ok()) throw std::runtime_error(status.message);
         const std::string text = rows_of(file);
         write_file(folder + name.substr(0, name.rfind('.')) + ".csv", text.data(), text.size());

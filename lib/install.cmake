@@ -1,6 +1,6 @@
-# Installs the reader, the rooms beside it and the builder, components `reader`, `visibility`, `batch`, `arrays`, `indexed`, `product`,
-# `shader` and `builder`: headers and a static library each, one CMake package and a pkg-config file each. All need the first, `shader`
-# and `builder` need `indexed`, `product` and `builder` need `visibility`. As shared libraries, one of the reader
+# Installs the reader, the rooms beside it and the builder, components `reader`, `visibility`, `batch`, `arrays`, `curves`, `indexed`,
+# `product`, `shader` and `builder`: headers and a static library each, one CMake package and a pkg-config file each. All need the
+# first, `shader` needs `indexed`, `product` `visibility`, `builder` these and `curves`. As shared libraries, one of the reader
 # with the rooms and one of the builder: `runtime`, and what links to them, `shared`.
 # The program: `tools`, its pages and completions `manual`. The Python package: `python`.
 # Everything is relocatable: the prefix may be moved or staged after installation.
@@ -60,6 +60,7 @@ install(FILES ${PROJECT_BINARY_DIR}/acdf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/
 set(ACDF_PC_SUMMARY_batch "many calls at once")
 set(ACDF_PC_SUMMARY_arrays "arrays, for other languages")
 set(ACDF_PC_SUMMARY_indexed "environments of several maps")
+set(ACDF_PC_SUMMARY_curves "files of the paper's own fits")
 set(ACDF_PC_SUMMARY_product "light, cosine and BRDF at once")
 set(ACDF_PC_SUMMARY_shader "tables for shaders")
 set(ACDF_PC_SUMMARY_visibility "light as positions see it")
@@ -68,6 +69,7 @@ set(ACDF_PC_NEEDS_arrays acdf)
 if(ACDF_BUILD_BATCH)
     set(ACDF_PC_NEEDS_arrays "acdf-batch")
 endif()
+set(ACDF_PC_NEEDS_curves acdf)
 set(ACDF_PC_NEEDS_indexed acdf)
 set(ACDF_PC_NEEDS_visibility acdf)
 set(ACDF_PC_NEEDS_product acdf-visibility)

@@ -12,6 +12,7 @@
 #include "tools/commands.h"
 #include "visibility/visible_view.h"
 
+#include <acdf/curves/curves.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -67,9 +68,11 @@ TreeCounts count_tree(const LoadedFile& loaded) {
             std::uint64_t{1};
         return counts;
     }
-    for (std::uint32_t at = 0; at < file.tree_units();) {
+    std::uint32_t units;
+    const std::uint8_t* tree = acdf_curves_tree(file.get(), &units);
+    for (std::uint32_t at = 0; at < units;) {
         AcdfCurve curve;
-        const std::size_t next = acdf_curve_decode(file.tree(), at, &curve);
+        const std::size_t next = acdf_curve_decode(tree, at, &curve);
         ++counts.curves;
         for (std::uint32_t i = 0; i < curve.segments; ++i)
             if (acdf_curve_link(&curve, i) == 0) ++counts.cells;

@@ -24,6 +24,7 @@
 #include "visibility/visible_view.h"
 
 #include <CLI/CLI.hpp>
+#include <acdf/curves/curves.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -209,7 +210,7 @@ double gain(const builder::Local& result) {
 nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const builder::Local& result) const {
     const builder::LocalAccuracy& a = result.accuracy;
     File file;
-    File::from_memory(result.bytes.data(), result.bytes.size(), file);
+    File::from_memory(result.bytes.data(), result.bytes.size(), file, with_curves());
     const AcdfNormalRows* const rows = file.local().data().rows_of_normals;
     const AcdfVisibility* const cells = visible_view(file).data().cells.header;
     nlohmann::ordered_json out = {

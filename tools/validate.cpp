@@ -10,6 +10,7 @@
 #include "rules/rules.h"
 #include "rules/signatures.h"
 
+#include <acdf/curves/curves.h>
 #include <nlohmann/json.hpp>
 
 #include <cstdio>

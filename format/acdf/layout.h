@@ -150,7 +150,6 @@ typedef struct AcdfBin {
     float share;   /* this bin's integral over `total` */
 } AcdfBin;
 
-#ifndef ACDF_ENVIRONMENT_ONLY
 /* Chunk TREE: curves, packed one after the other, each a whole number of 16-bit units (SPEC.md §7.2):
  *   uint16 header; [uint32 segments, as two uint16]; cumulative[n-1]; positions[n-1]; links[n] (if any);
  *   tilts[n] (if any); zero padding. Each array starts at the next multiple of its element's size. */
@@ -161,7 +160,6 @@ typedef struct AcdfBin {
 #define ACDF_CURVE_TILTED 0x0200u
 #define ACDF_CURVE_SEGMENTS_SHIFT 10 /* 1 to 63 segments; 0: the count follows */
 #define ACDF_CURVE_SHORT_SEGMENTS 63u
-#endif
 
 /* Chunk HALV: a tree of halvings (SPEC.md §6.2), instead of BINS and TREE. This, then two runs of bits, the lowest
  * of each byte first, each padded with zeros to a multiple of 32: the nodes in preorder, 0 for a leaf, else 1 and

@@ -4,6 +4,7 @@
 #include "build/text/options.h"
 #include "build/weight_bound.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -45,7 +46,7 @@ compress::Chunk views_chunk(const compress::BrdfFit& fit, float diffuse_share) {
 BrdfAccuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::Reflected& reflected,
                            const std::vector<compress::View>& views, Sides sides) {
     File file;
-    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
+    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file, with_curves()); !status.ok())
         throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
     BrdfAccuracy out = summary(measure_views(file, reflected, views, sides));
     out.cells = brdf_cells(file);

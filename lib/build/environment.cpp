@@ -8,6 +8,8 @@
 #include "compress/halvings/fit.h"
 #include "compress/partner/target.h"
 
+#include <acdf/curves/curves.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <stdexcept>
@@ -56,7 +58,8 @@ compress::Target fitted_target(const compress::Target& target, const Environment
 void recommend(const std::vector<std::uint8_t>& bytes, const compress::Target& target,
                const EnvironmentOptions& options, compress::Description& description) {
     File file;
-    if (!File::from_memory(bytes.data(), bytes.size(), file).ok()) return; // measure_bytes reports it
+    if (!File::from_memory(bytes.data(), bytes.size(), file, with_curves()).ok())
+        return; // measure_bytes reports it
     const double share = recommended_light_share(file, target, test_normals(options.scene, 64));
     description.chunks = {compress::partner_chunk(options.mis, static_cast<float>(share), {})};
 }
@@ -70,7 +73,7 @@ std::string out_of_budget(std::uint64_t budget, const compress::Description& des
 
 Accuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::Target& target) {
     File file;
-    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
+    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file, with_curves()); !status.ok())
         throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
     return measure_environment(file, target);
 }

@@ -3,6 +3,8 @@
 #include "build/compressed_budget.h"
 #include "build/text/options.h"
 
+#include <acdf/curves/curves.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -69,7 +71,7 @@ compress::Chunk partner_chunk(const compress::Partner& partner, const std::vecto
 
 File opened(const std::vector<std::uint8_t>& bytes) {
     File file;
-    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
+    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file, with_curves()); !status.ok())
         throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
     return file;
 }

@@ -1,12 +1,15 @@
 // Samples and pdfs of arrays.
 #include "python/file.h"
 
+#include <acdf/curves/curves.h>
+
 namespace acdf::python {
 namespace {
 
 AcdfLoadOptions load_options(bool tables) {
     AcdfLoadOptions options = {};
     options.plain = !tables;
+    options.curves = acdf_curves();
     return options;
 }
 

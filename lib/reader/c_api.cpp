@@ -30,6 +30,7 @@ int acdf_table(const AcdfFile* file, AcdfTable* out) {
 
 int acdf_memory(const AcdfFile* file, AcdfMove* moves) {
     int count = 0;
+    if (file->curves()) return 0;
     moves[count++] = {file->bytes, static_cast<size_t>(file->size), nullptr};
     for (int i = 1; i < ACDF_MAX_MOVES; ++i)
         if (file->memory[i].data) moves[count++] = {file->memory[i].data, file->memory[i].bytes, nullptr};
@@ -38,10 +39,6 @@ int acdf_memory(const AcdfFile* file, AcdfMove* moves) {
 #endif
 
 const AcdfPartner* acdf_partner(const AcdfFile* file) { return file->partner; }
-const uint8_t* acdf_tree(const AcdfFile* file, uint32_t* units) {
-    if (units) *units = file->tree_units;
-    return file->tree;
-}
 
 AcdfKind acdf_kind(const AcdfFile* file) { return file->kind(); }
 uint64_t acdf_table_bytes(const AcdfFile* file) { return file->table_bytes(); }

@@ -133,29 +133,30 @@ void take_parts(const Parts& parts, AcdfFile& file) noexcept {
     file.description = parts.description;
     file.axes = parts.axes;
     file.bins = parts.bins;
-    file.tree = parts.tree;
-    file.tree_units = parts.tree_units;
     file.partner = parts.partner;
     file.metadata = parts.metadata;
     file.metadata_count = parts.metadata_count;
     file.payloads = parts.payloads;
     if (file.kind() != ACDF_KIND_ENVIRONMENT) return;
-    file.environment.tree = parts.tree;
-    file.environment.root = parts.bins ? parts.bins[0].root : 0;
     file.environment.columns = parts.axes[ACDF_AXIS_PHI].resolution;
     file.environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
     file.environment.total = parts.description->total;
     file.environment.parameterization = parts.description->parameterization;
     file.environment.partner = parts.partner;
+    if (parts.bins) file.environment.root = parts.bins[0].root;
 }
 
 // Checks the bytes of a file, and makes its view. On failure the caller gives its memory back.
 bool load(const LoadOptions& options, AcdfFile& file, AcdfError& status) noexcept {
     Parts parts;
-    check(file.bytes, file.size, options.limits, first_error, &status, parts, options.allocator);
+    check(file.bytes, file.size, options, first_error, &status, parts);
     file.memory[1] = parts.inflated;
     if (status.code != ACDF_OK) return false;
     take_parts(parts, file);
+    if (file.curves()) {
+        file.environment.curves = options.curves;
+        file.environment.tree = parts.payloads.of[chunk_tree].data;
+    }
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (file.kind() == ACDF_KIND_TABLE) {
         make_view(parts, options.tables, file);
@@ -195,6 +196,7 @@ LoadOptions given(const AcdfLoadOptions* from) {
     if (from->max_inflated_bytes > 0) options.limits.max_inflated_bytes = from->max_inflated_bytes;
     options.tables = !from->plain;
     options.allocator = from->allocator;
+    options.curves = from->curves;
     return options;
 }
 

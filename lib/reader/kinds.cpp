@@ -17,12 +17,13 @@ void make_local(const Parts& parts, AcdfFile& file) {
     const AcdfDescription& description = *parts.description;
     AcdfLocal& local = file.local;
     // Its environment is complete, whatever the file is made for: it has no partner.
-    local.environment.tree = parts.tree;
     local.environment.columns = parts.axes[ACDF_AXIS_PHI].resolution;
     local.environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
     local.environment.total = description.total;
     local.environment.parameterization = description.parameterization;
     local.environment.halved = file.environment.halved;
+    local.environment.curves = file.environment.curves;
+    local.environment.tree = file.environment.tree;
     local.rows_of_normals = file.rows;
     local.partner = parts.partner;
     local.bins = parts.bins;
@@ -38,13 +39,14 @@ void make_local(const Parts& parts, AcdfFile& file) {
 void make_brdf(const Parts& parts, AcdfFile& file) {
     file.brdf = {file.environment.halved,
                  file.rows,
-                 parts.tree,
                  parts.bins,
                  parts.views,
                  parts.nodes,
                  parts.axes[0].resolution,
                  parts.halvings ? ACDF_HALF_STEPS : parts.axes[1].resolution,
-                 parts.description->total};
+                 parts.description->total,
+                 file.environment.curves,
+                 file.environment.tree};
 }
 
 void make_table(const Parts& parts, bool tables, AcdfFile& file) {

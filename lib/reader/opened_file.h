@@ -13,8 +13,6 @@ struct AcdfFile {
     const AcdfDescription* description;
     const AcdfAxis* axes;
     const AcdfBin* bins; ///< null: none
-    const std::uint8_t* tree;
-    std::uint32_t tree_units;
     const AcdfPartner* partner;
     const std::uint8_t* metadata;
     std::uint32_t metadata_count;
@@ -31,6 +29,8 @@ struct AcdfFile {
     AcdfBlock memory[4];     ///< the file's bytes; inflated chunks; runtime tables; those of rows of halvings
 
     std::uint64_t table_bytes() const { return std::uint64_t{memory[2].bytes} + memory[3].bytes; }
+    /// Whether there are curves instead of halvings.
+    bool curves() const { return payloads.of[acdf::chunk_halvings].data == nullptr; }
     AcdfKind kind() const { return static_cast<AcdfKind>(reinterpret_cast<const AcdfHeader*>(bytes)->kind); }
 };
 

@@ -77,19 +77,6 @@ struct Cells {
             add(nodes, leaf ? ACDF_LEAF : upper ? at + (node.link >> 5) : at + 1, half);
         }
     }
-    /// Below a curve that divides a box. False where there are too many: of shared curves there may be more cells
-    /// than bytes. A path passes at most 64 curves.
-    bool add(const std::uint8_t* tree, u32 at, const AcdfRange box[2]) {
-        const AcdfCurve curve = acdf_curve_at(tree, at);
-        for (u32 i = 0; i < curve.segments && count < (std::size_t{1} << 24); ++i) {
-            AcdfRange part[2] = {box[0], box[1]};
-            acdf_curve_narrow(&curve, i, &part[acdf_curve_axis(&curve)]);
-            const u32 link = acdf_curve_link(&curve, i);
-            if (link == 0) add(part[0].low, part[0].high, part[1].low, part[1].high);
-            else if (!add(tree, at + link, part)) return false;
-        }
-        return count < (std::size_t{1} << 24);
-    }
 };
 
 } // namespace
@@ -180,14 +167,8 @@ ACDF_EXPORT std::size_t acdf_web_cells(const Opened* opened, u32* out, std::size
     if (opened->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
     const AcdfEnvironment environment = opened->file.environment().data();
     Cells cells{out, most};
-    if (environment.halved) {
-        const AcdfSpan whole[2] = {{{0, environment.columns}}, {{0, environment.rows}}};
-        cells.add(acdf_halvings_nodes(environment.halved), environment.halved->count ? 0 : ACDF_LEAF, whole);
-    } else {
-        AcdfRange whole[2];
-        acdf_sphere_ranges(environment.columns, environment.rows, whole);
-        cells.add(environment.tree, environment.root, whole);
-    }
+    const AcdfSpan whole[2] = {{{0, environment.columns}}, {{0, environment.rows}}};
+    cells.add(acdf_halvings_nodes(environment.halved), environment.halved->count ? 0 : ACDF_LEAF, whole);
     return cells.count;
 }
 

@@ -14,6 +14,7 @@
 #include "measure/samplers/brdf_table.h"
 #include "measure/samplers/rgl_sampler.h"
 
+#include <acdf/curves/curves.h>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -108,8 +109,8 @@ struct Built {
         bytes = build::build_brdf(brdf, options).bytes;
         LoadOptions walk;
         walk.tables = false;
-        File::from_memory(bytes.data(), bytes.size(), tables);
-        File::from_memory(bytes.data(), bytes.size(), plain, walk);
+        File::from_memory(bytes.data(), bytes.size(), tables, acdf::with_curves());
+        File::from_memory(bytes.data(), bytes.size(), plain, acdf::with_curves(walk));
     }
 };
 
@@ -210,7 +211,7 @@ int count(const char* what, const char* path, std::size_t calls, bool walk) {
     LoadOptions options;
     options.tables = !walk;
     File file;
-    if (!File::open(path, file, options).ok() || file.kind() != ACDF_KIND_BRDF) return 1;
+    if (!File::open(path, file, acdf::with_curves(options)).ok() || file.kind() != ACDF_KIND_BRDF) return 1;
     const Sampler sampler = of_view("", file.brdf());
     queries();
     (std::strcmp(what, "sample") == 0 ? sampler.sample : sampler.pdf)(0, calls);

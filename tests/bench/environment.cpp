@@ -14,6 +14,7 @@
 #include "measure/samplers/alias_table.h"
 #include "measure/samplers/hierarchical_warp.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -52,8 +53,8 @@ struct Built {
         bytes = compress::store(compress::fit_halvings(target, options), description);
         LoadOptions plain;
         plain.tables = false;
-        File::from_memory(bytes.data(), bytes.size(), with_lookup);
-        File::from_memory(bytes.data(), bytes.size(), without, plain);
+        File::from_memory(bytes.data(), bytes.size(), with_lookup, acdf::with_curves());
+        File::from_memory(bytes.data(), bytes.size(), without, acdf::with_curves(plain));
     }
 };
 
@@ -114,7 +115,7 @@ double milliseconds_to_open(const std::vector<std::uint8_t>& bytes) {
     for (int k = 0; k < 20; ++k) {
         File file;
         const double begin = acdf_bench::thread_seconds();
-        File::from_memory(bytes.data(), bytes.size(), file);
+        File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
         least = std::min(least, 1e3 * (acdf_bench::thread_seconds() - begin));
     }
     return least;
@@ -187,7 +188,7 @@ void building(std::uint32_t columns, AcdfFilter filter) {
 
 int count(const char* what, const char* path, std::size_t calls) {
     File file;
-    if (!File::open(path, file).ok() || file.kind() != ACDF_KIND_ENVIRONMENT) return 1;
+    if (!File::open(path, file, acdf::with_curves()).ok() || file.kind() != ACDF_KIND_ENVIRONMENT) return 1;
     const EnvironmentView view = file.environment();
     const std::vector<float> u = numbers(false);
     const Directions w = uniform_directions(kNumbers, 9);

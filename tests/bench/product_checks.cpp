@@ -71,7 +71,7 @@ double cut_integral(const AcdfVisibleLocal& light, const Point& point) {
     double sum = 0.0;
     for (std::uint32_t y = 0; y < grid.rows; ++y)
         for (std::uint32_t x = 0; x < grid.columns; ++x) {
-            const AcdfRange square[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
+            const AcdfRange square[2] = {{x, x + 1}, {y, y + 1}};
             const AcdfDirectionSample at = acdf_grid_position(&grid, square, middle, 1.0);
             const float pdf = acdf_cut_pdf(&light, &point.light, &point.cut, at.direction);
             sum += double{pdf} * acdf_grid_solid_angle(&grid, square);
@@ -98,7 +98,7 @@ struct Squares {
         for (std::uint32_t y = 0; y < grid.rows; ++y)
             for (std::uint32_t x = 0; x < grid.columns; ++x) {
                 Square square = {{x, y}, {}, 0.0f};
-                const AcdfRange range[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
+                const AcdfRange range[2] = {{x, x + 1}, {y, y + 1}};
                 place(square, 0.5, 0.5, square.direction);
                 square.light =
                     static_cast<float>(double{acdf_environment_pdf(&local.environment, square.direction)} *
@@ -108,7 +108,7 @@ struct Squares {
     }
     /// A direction in a square, at fractions of it of equal solid angle.
     void place(const Square& square, double u, double v, float out[3]) const {
-        const AcdfRange range[2] = {{square.at[0], square.at[0] + 1, 0.0}, {square.at[1], square.at[1] + 1, 0.0}};
+        const AcdfRange range[2] = {{square.at[0], square.at[0] + 1}, {square.at[1], square.at[1] + 1}};
         const double fractions[2] = {u, v};
         const AcdfDirectionSample at = acdf_grid_position(&grid, range, fractions, 1.0);
         std::copy_n(at.direction, 3, out);

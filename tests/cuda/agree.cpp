@@ -76,7 +76,9 @@ bool of_file(const char* path, std::size_t count) {
         acdf::LoadOptions options;
         options.tables = tables;
         acdf::File file;
-        if (const acdf::Status status = acdf::File::open(path, file, options); !status.ok()) {
+        const acdf::Status status = acdf::File::open(path, file, options);
+        if (status.rule == 5002) return true; // curves, which kernels do not take
+        if (!status.ok()) {
             std::fprintf(stderr, "%s: %s\n", path, status.message);
             std::exit(1);
         }

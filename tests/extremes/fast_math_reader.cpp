@@ -2,6 +2,7 @@
 // earlier versions, of all kinds of spheres; numbers are all that a caller might pass.
 #include "tests/extremes/fast_math.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -69,7 +70,7 @@ std::vector<std::string> golden_files() {
 class FastMath : public ::testing::TestWithParam<std::string> {
 protected:
     void SetUp() override {
-        const acdf::Status status = acdf::File::open(GetParam().c_str(), file_);
+        const acdf::Status status = acdf::File::open(GetParam().c_str(), file_, acdf::with_curves());
         ASSERT_TRUE(status.ok()) << status.message;
         if (file_.kind() == ACDF_KIND_ENVIRONMENT) sampler_ = environment(file_.environment().data());
         else if (file_.kind() == ACDF_KIND_LOCAL) sampler_ = local(file_.local().data());

@@ -5,6 +5,7 @@
 
 #include "build/accuracy/environment.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -36,7 +37,7 @@ TEST_P(Extreme, WeightsAreFiniteAndEveryNumberSamplesSomething) {
         SCOPED_TRACE(fit.name);
         const auto bytes = environment_file(target(), fit.options);
         acdf::File file;
-        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
         const acdf::EnvironmentView view = file.environment();
         for (const double u0 : numbers)
             for (const double u1 : numbers) {
@@ -55,11 +56,12 @@ TEST_P(Extreme, CodecsChangeNoSample) {
     for (const NamedFit& fit : all_fits(9, 7, 60)) {
         const auto plain = environment_file(target(), fit.options);
         acdf::File file;
-        ASSERT_TRUE(acdf::File::from_memory(plain.data(), plain.size(), file).ok());
+        ASSERT_TRUE(acdf::File::from_memory(plain.data(), plain.size(), file, acdf::with_curves()).ok());
         for (const AcdfCodec codec : {ACDF_CODEC_ZLIB, ACDF_CODEC_PLANES}) {
             const auto packed = environment_file(target(), fit.options, codec);
             acdf::File other;
-            const acdf::Status status = acdf::File::from_memory(packed.data(), packed.size(), other);
+            const acdf::Status status =
+                acdf::File::from_memory(packed.data(), packed.size(), other, acdf::with_curves());
             ASSERT_TRUE(status.ok()) << fit.name << ": " << status.message;
             std::mt19937_64 random(7);
             for (int i = 0; i < 200; ++i) {
@@ -83,7 +85,7 @@ TEST(ExtremeConstant, IsOneCellWithoutVariance) {
         acdf::compress::FitOptions options;
         const auto bytes = environment_file(target, options);
         acdf::File file;
-        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
         const auto accuracy = acdf::build::measure_environment(file, target);
         EXPECT_EQ(accuracy.cells, 1u) << value;
         EXPECT_NEAR(accuracy.relative_variance, 0.0, 1e-13) << value;
@@ -100,7 +102,7 @@ TEST(ExtremeRange, MoreCellsNeverHurt) {
             options.goal.cells = cells;
             const auto bytes = environment_file(t.target, options);
             acdf::File file;
-            ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+            ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
             const double variance = acdf::build::measure_environment(file, t.target).relative_variance;
             // Probabilities are rounded to what their curve stores.
             EXPECT_LE(variance, previous * 1.01 + 1e-6) << t.name << ", " << cells << " cells";

@@ -1,6 +1,5 @@
 // Random numbers are floats in most renderers: 2^24 steps an axis. Which cells can they reach, and how far from
 // its pdf is what they sample? Every number of the grid counts: nothing is sampled.
-#include "tests/extremes/find_cell.h"
 #include "tests/extremes/targets.h"
 #include "tests/inputs/environment_file.h"
 #include "tests/inputs/sanitized.h"
@@ -10,6 +9,7 @@
 #include "compress/store/store.h"
 #include "compress/sum.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -214,7 +214,7 @@ struct Reach {
 Reach reach(const Target& target, const acdf::compress::FitOptions& options) {
     const auto bytes = environment_file(target, options);
     acdf::File file;
-    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
     EXPECT_TRUE(status.ok()) << status.message;
     const AcdfEnvironment env = file.environment().data();
     Reach out;
@@ -231,7 +231,7 @@ Reach reach(const Target& target, const acdf::compress::FitOptions& options) {
         const std::uint32_t square[2] = {cell.range[0].low, cell.range[1].low};
         AcdfRange range[2];
         AcdfStratum strata[2];
-        const double p = find_cell(env, square, range, strata);
+        const double p = acdf_environment_find_square(&env, square, range, strata);
         EXPECT_NEAR(strata[0].width * strata[1].width / p, 1.0, 1e-9);
         const Pairs pairs = pairs_into(strata);
         const double share = energy.value() / target.total;
@@ -309,7 +309,8 @@ TEST(DeepTrees, AtDepth12EveryCellIsReachedAsOftenAsItShould) {
         for (const double share : shares) {
             const auto bytes = chain(12, share, one_axis);
             acdf::File file;
-            const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+            const acdf::Status status =
+                acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
             ASSERT_TRUE(status.ok()) << status.message;
             const AcdfEnvironment env = file.environment().data();
             std::uint64_t all = 0, cells = 0;
@@ -317,7 +318,7 @@ TEST(DeepTrees, AtDepth12EveryCellIsReachedAsOftenAsItShould) {
                 const std::uint32_t square[2] = {cell.range[0].low, cell.range[1].low};
                 AcdfRange range[2];
                 AcdfStratum strata[2];
-                const double p = find_cell(env, square, range, strata);
+                const double p = acdf_environment_find_square(&env, square, range, strata);
                 const std::uint64_t pairs = pairs_into(strata).widened;
                 EXPECT_NEAR(static_cast<double>(pairs) * 0x1p-48, p, 1e-3 * p + 0x1p-44);
                 EXPECT_GT(pairs, 0u);

@@ -1,10 +1,10 @@
 // No result depends on the order in which texels are added up.
-#include "tests/extremes/find_cell.h"
 #include "tests/extremes/targets.h"
 #include "tests/inputs/environment_file.h"
 
 #include "build/accuracy/environment.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -75,7 +75,7 @@ TEST(Summation, AccuracyIsThatOfAnyOrder) {
         options.goal.cells = 100;
         const auto bytes = environment_file(t.target, options);
         acdf::File file;
-        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
         const auto accuracy = acdf::build::measure_environment(file, t.target);
         std::vector<std::size_t> order(t.target.values.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
@@ -89,7 +89,7 @@ TEST(Summation, AccuracyIsThatOfAnyOrder) {
                                              static_cast<std::uint32_t>(k / t.target.columns)};
             AcdfRange range[2];
             AcdfStratum strata[2];
-            const double p = find_cell(env, square, range, strata);
+            const double p = acdf_environment_find_square(&env, square, range, strata);
             const AcdfGrid grid = acdf_environment_grid(&env);
             const double density = p / acdf_grid_solid_angle(&grid, range);
             const auto measure = static_cast<long double>(t.target.row_measure[square[1]]) *
@@ -113,7 +113,7 @@ TEST(Summation, FitsAreAsGoodInAnyOrder) {
             const Target target = i == 0 ? t.target : reversed(t.target);
             const auto bytes = environment_file(target, options);
             acdf::File file;
-            ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+            ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
             variance[i] = acdf::build::measure_environment(file, target).relative_variance;
         }
         // Ties are resolved from the left, so that the fits are not mirror images; none may be much worse.

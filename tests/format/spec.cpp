@@ -1,9 +1,11 @@
 // format/SPEC.md and format/examples.md against the program: rules and worked examples.
+#include "tests/lib/curves/open.h"
+#include "tests/lib/curves/planes.h"
 #include "tests/lib/reader/load.h"
-#include "tests/lib/reader/planes.h"
 
 #include "rules/rules.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/halvings.h>
 
 #include <gtest/gtest.h>
@@ -124,7 +126,7 @@ TEST(Spec, firstExampleLoads) {
     const Bytes bytes = first_example();
     EXPECT_TRUE(findings(bytes).rules.empty()) << findings(bytes).text;
     acdf::File file;
-    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
     ASSERT_TRUE(status.ok()) << status.message;
     const auto s = file.environment().sample(0.1, 0.25);
     const float right[3] = {0.6f, 0.0f, 0.8f}, low[3] = {0.0f, 0.8f, 0.6f}, below[3] = {0.6f, 0.0f, -0.8f};
@@ -174,9 +176,9 @@ TEST(Spec, secondExampleLoads) {
     const Bytes bytes = second_example();
     EXPECT_TRUE(findings(bytes).rules.empty()) << findings(bytes).text;
     acdf::File file;
-    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
     ASSERT_TRUE(status.ok()) << status.message;
-    const Bytes tree(file.tree(), file.tree() + 2 * file.tree_units());
+    const Bytes tree(TreeOf(file).data, TreeOf(file).data + 2 * TreeOf(file).units);
     EXPECT_EQ(tree, second_environment().tree.encode());
     std::string listed;
     for (const std::uint8_t byte : tree) {

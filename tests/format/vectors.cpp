@@ -2,6 +2,7 @@
 // was.
 #include "visibility/visible_view.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/indexed/views.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -142,7 +143,7 @@ TEST(Vectors, areWhatTheReaderGives) {
         acdf::File file;
         acdf::LoadOptions walked; // as SPEC.md says it, to the last bit
         walked.tables = false;
-        const acdf::Status status = acdf::File::open(path.c_str(), file, walked);
+        const acdf::Status status = acdf::File::open(path.c_str(), file, acdf::with_curves(walked));
         ASSERT_TRUE(status.ok()) << status.message;
         ++kinds[file.kind()];
         int line = 1;

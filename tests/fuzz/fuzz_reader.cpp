@@ -9,6 +9,7 @@
 
 #include "reader/check/check.h"
 
+#include <acdf/curves/curves.h>
 #include <algorithm>
 
 using namespace acdf_test;
@@ -60,9 +61,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (size != 0) std::memcpy(bytes, data, size);
     {
         acdf::File file;
-        const acdf::Status status = acdf::File::from_memory(bytes, size, file, limits);
+        const acdf::Status status = acdf::File::from_memory(bytes, size, file, acdf::with_curves(limits));
         const acdf::Verdict verdict = acdf::validate(
-            bytes, size, [](const acdf::Finding&) {}, limits);
+            bytes, size, [](const acdf::Finding&) {}, acdf::with_curves(limits));
         require(status.ok() == verdict.valid() && file.empty() == !status.ok());
         require(status.ok() || (status.rule != 0 && status.message[0] != 0 && status.offset <= size));
         if (status.ok()) sample_everything(file, bytes, size);

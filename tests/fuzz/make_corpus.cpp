@@ -1,10 +1,10 @@
 // Writes the seeds of fuzz_reader, small valid files that use everything, to FOLDER/fuzz_reader: make_corpus FOLDER
 // (Those of the other fuzzers are in seeds/.)
+#include "tests/lib/curves/planes.h"
 #include "tests/lib/indexed/indexed_builder.h"
 #include "tests/lib/reader/brdf_builder.h"
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/normals_builder.h"
-#include "tests/lib/reader/planes.h"
 #include "tests/lib/reader/random_halvings.h"
 
 #include <cstdio>

@@ -1,4 +1,5 @@
 #include "tests/fuzz/sample_file.h"
+#include "tests/lib/curves/open.h"
 
 #include "tests/fuzz/require.h"
 #if ACDF_BATCH
@@ -9,6 +10,7 @@
 #include "indexed/check.h"
 
 #include <acdf/acdf.h>
+#include <acdf/curves/curves.h>
 #include <acdf/indexed/views.h>
 #include <acdf/shader/tables.h>
 #include <acdf/visibility/visibility.h>
@@ -54,7 +56,7 @@ void lookups_are_descents(const acdf::EnvironmentView& view, const void* bytes, 
     acdf::LoadOptions options;
     options.tables = false;
     acdf::File plain;
-    require(acdf::File::from_memory(bytes, size, plain, options).ok());
+    require(acdf::File::from_memory(bytes, size, plain, acdf::with_curves(options)).ok());
     const acdf::EnvironmentView descents = plain.environment();
     require(descents.data().halved->bits == 0);
     for (int n = 0; n < samples_a_file; ++n) {
@@ -148,7 +150,7 @@ void sample_everything(const acdf::TableView& view, FuzzRandom& random) {
 /// The same bytes through the C interface: the same pdfs.
 void sample_in_c(const void* bytes, std::size_t size, const acdf::File& file, FuzzRandom& random) {
     AcdfError error;
-    AcdfFile* c = acdf_from_memory(bytes, size, &error);
+    AcdfFile* c = acdf_test::from_memory_in_c(bytes, size, &error);
     require(c && error.code == ACDF_OK && acdf_kind(c) == file.kind() && acdf_size(c) == size);
     require(acdf_metadata_count(c) == file.metadata_count());
     require(!acdf_axis(c, file.description().axis_count) && !acdf_bin(c, file.description().bin_count));

@@ -3,6 +3,7 @@
 
 #include "build/brdf.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -70,7 +71,8 @@ inline std::unique_ptr<MadeBrdf> make_brdf(std::unique_ptr<acdf::build::Brdf> so
     auto out = std::make_unique<MadeBrdf>();
     out->source = std::move(source);
     out->made = acdf::build::build_brdf(*out->source, options);
-    const acdf::Status status = acdf::File::from_memory(out->made.bytes.data(), out->made.bytes.size(), out->file);
+    const acdf::Status status =
+        acdf::File::from_memory(out->made.bytes.data(), out->made.bytes.size(), out->file, acdf::with_curves());
     EXPECT_TRUE(status.ok()) << status.message;
     out->reflected = acdf::build::reflected_light(*out->source, options.channels, options.weights);
     return out;

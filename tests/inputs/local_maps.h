@@ -10,6 +10,7 @@
 #include "compress/sum.h"
 #include "input/probe/probe.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -133,7 +134,7 @@ struct LocalMap {
 
     LocalMap(acdf::compress::Target t, acdf::compress::NormalBins b, const LocalFileOptions& options)
         : target(std::move(t)), bins(std::move(b)), bytes(local_bytes(target, bins, options)), exact(target) {
-        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
         if (!status.ok()) throw std::runtime_error(status.message);
         for (std::uint32_t r = 0; r < target.rows; ++r)
             for (std::uint32_t c = 0; c < target.columns; ++c) {
@@ -167,7 +168,7 @@ struct LocalMap {
 
 inline double square_area(const AcdfEnvironment& env, std::uint32_t row) {
     const AcdfGrid grid = acdf_environment_grid(&env);
-    const AcdfRange square[2] = {{0, 1, 0.0}, {row, row + 1, 0.0}};
+    const AcdfRange square[2] = {{0, 1}, {row, row + 1}};
     return acdf_grid_solid_angle(&grid, square);
 }
 

@@ -42,6 +42,6 @@ PROJECT
 done
 
 "$cmake" --build add/build >>add.log 2>&1 || { cat add.log; exit 1; } # not optimised, as asked
-add/build/renderer "$source/tests/golden/v1.0/zlib.acdf" | grep -q '^total '
+add/build/renderer "$source/tests/golden/v1.0/halvings_zlib.acdf" | grep -q '^total '
 "$cmake" --install add/build --prefix "$work/installed" >>add.log
 diff <(cd installed && find . -type f) <(echo ./bin/renderer)

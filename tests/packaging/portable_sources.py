@@ -24,8 +24,8 @@ NEWER = {
     r"\bcxx_std_26\b": "3.25", r"\bcxx_std_23\b": "3.20",
 }
 FILES = ["CMakeLists.txt", "lib/CMakeLists.txt", "lib/install.cmake", "lib/acdfConfig.cmake.in", "lib/packages.cmake",
-         "lib/reader/CMakeLists.txt", "lib/arrays/CMakeLists.txt", "lib/batch/CMakeLists.txt", "lib/indexed/CMakeLists.txt",
-         "lib/visibility/CMakeLists.txt", "lib/product/CMakeLists.txt", "lib/shader/CMakeLists.txt",
+         "lib/reader/CMakeLists.txt", "lib/arrays/CMakeLists.txt", "lib/batch/CMakeLists.txt", "lib/curves/CMakeLists.txt",
+         "lib/indexed/CMakeLists.txt", "lib/visibility/CMakeLists.txt", "lib/product/CMakeLists.txt", "lib/shader/CMakeLists.txt",
          "lib/compress/CMakeLists.txt", "lib/build/CMakeLists.txt", "lib/python/CMakeLists.txt"]
 
 
@@ -70,7 +70,7 @@ def main(root):
         for line, what, since in newer((root / name).read_text()):
             print(f"{name}:{line}: {what} came with CMake {since}")
             count += 1
-    for room in ("reader", "arrays", "batch", "indexed", "visibility", "product", "compress", "build"):
+    for room in ("reader", "arrays", "batch", "curves", "indexed", "visibility", "product", "compress", "build"):
         for path in sorted((root / "lib" / room).rglob("*.*")):
             if path.suffix not in (".h", ".cpp"):
                 continue

@@ -44,7 +44,8 @@ WITH = {"charconv": {"system_error"}, "iostream": {"istream", "ostream", "string
         "gtest/gtest.h": {"string", "vector", "memory", "ostream", "iostream", "sstream", "tuple", "type_traits", "map", "set",
                           "functional", "limits", "utility", "atomic", "mutex", "cstring", "cstdio"}}
 OF = {name: header for header, names in HEADERS.items() for name in names.split()}
-ROOTS = ("", "lib", "lib/reader", "lib/arrays", "lib/batch", "lib/indexed", "lib/visibility", "lib/product", "lib/shader", "format", "tools")
+ROOTS = ("", "lib", "lib/reader", "lib/arrays", "lib/batch", "lib/curves", "lib/indexed", "lib/visibility", "lib/product", "lib/shader",
+         "format", "tools")
 
 
 def code(text):

@@ -3,6 +3,7 @@
 #include "tests/tools/plot/files.h"
 #include "tests/tools/run.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -95,7 +96,7 @@ TEST(BrdfCommand, plotsAHemisphere) {
     ASSERT_EQ(image.width, width);
     ASSERT_EQ(image.height, width);
     File file;
-    ASSERT_TRUE(File::open(small_file().c_str(), file).ok());
+    ASSERT_TRUE(File::open(small_file().c_str(), file, acdf::with_curves()).ok());
     const auto radians = [](double degrees) { return degrees * ACDF_PI / 180.0; };
     const float wo[3] = {float(std::sin(radians(60)) * std::cos(radians(30))),
                          float(std::sin(radians(60)) * std::sin(radians(30))), float(std::cos(radians(60)))};
@@ -132,7 +133,7 @@ TEST(BrdfCommand, plotsAView) {
 
 TEST(BrdfCommand, samplesAndPdfsAreThoseOfTheReader) {
     acdf::File file;
-    ASSERT_TRUE(acdf::File::open(small_file().c_str(), file).ok());
+    ASSERT_TRUE(acdf::File::open(small_file().c_str(), file, acdf::with_curves()).ok());
     const Result sampled = run_acdf({"sample", small_file(), "-n", "40", "--view", "50,20", "--sequence", "sobol"});
     ASSERT_EQ(sampled.code, 0) << sampled.err;
     const Result evaluated = run_acdf({"pdf", small_file(), "--view", "50,20"}, sampled.out);
@@ -196,7 +197,7 @@ TEST(BrdfCommand, anisotropicTablesAreFollowed) {
     const Json report = Json::parse(made.out);
     EXPECT_LT(report.at("relative_variance").get<double>(), 0.05);
     acdf::File file;
-    ASSERT_TRUE(acdf::File::open((folder / "a.acdf").c_str(), file).ok());
+    ASSERT_TRUE(acdf::File::open((folder / "a.acdf").c_str(), file, acdf::with_curves()).ok());
     EXPECT_EQ(file.axis(3).resolution, 8u);
     const float up[3] = {0.0f, 0.0f, 1.0f};
     const float along[3] = {std::sin(0.6f), 0.0f, std::cos(0.6f)},

@@ -2,6 +2,7 @@
 // devices (tests/shaders).
 #include "tests/tools/run.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/shader/tables.h>
 
 #include <nlohmann/json.hpp>
@@ -17,12 +18,12 @@ class Export : public testing::Test {
 protected:
     Folder folder;
     const std::string file = folder / "sky.acdf", text = folder / "sky.txt", tables = folder / "sky.bin";
-    void SetUp() override { write_bytes(file, small_environment()); }
+    void SetUp() override { write_bytes(file, small_halvings()); }
 
     std::vector<std::uint32_t> words() const {
         File opened;
         ShaderTables made;
-        EXPECT_TRUE(File::open(file.c_str(), opened).ok());
+        EXPECT_TRUE(File::open(file.c_str(), opened, acdf::with_curves()).ok());
         EXPECT_TRUE(ShaderTables::make(opened, made).ok());
         return {made.words(), made.words() + made.size()};
     }
@@ -78,8 +79,8 @@ TEST_F(Export, WithoutTablesCAndJsonHoldThem) {
 TEST_F(Export, OneTextServesAllKinds) {
     const std::string golden = std::string(ACDF_TEST_DIR) + "/golden/v1.0/";
     const std::string functions = run_acdf({"export", file, "--target", "glsl"}).out;
-    for (const char* name : {"local.acdf", "local_grid.acdf", "octahedral.acdf", "visibility.acdf",
-                             "brdf_mirrored.acdf", "zlib.acdf"}) {
+    for (const char* name : {"local.acdf", "halvings_octahedral.acdf", "visibility.acdf", "brdf_mirrored.acdf",
+                             "halvings_zlib.acdf"}) {
         const Result result = run_acdf({"export", golden + name, "--target", "glsl", "--tables", tables, "-f"});
         EXPECT_EQ(result.out, functions) << name;
         ASSERT_EQ(result.code, 0) << result.err;
@@ -87,7 +88,7 @@ TEST_F(Export, OneTextServesAllKinds) {
             EXPECT_NE(result.out.find(function), std::string::npos) << name;
         File opened;
         ShaderTables made;
-        ASSERT_TRUE(File::open((golden + name).c_str(), opened).ok());
+        ASSERT_TRUE(File::open((golden + name).c_str(), opened, acdf::with_curves()).ok());
         ASSERT_TRUE(ShaderTables::make(opened, made).ok());
         const std::string bytes = read_text(tables);
         ASSERT_EQ(bytes.size(), 4 * made.size()) << name;
@@ -141,17 +142,17 @@ TEST_F(Export, RefusesWhatHasNoTables) {
     compress::Description description = compress::environment_description(8, 4);
     description.total = 1.0;
     write_bytes(file, compress::store(compress::encode_tree(tilted), description));
-    expect_failure({"export", file, "--target", "glsl", "--tables", tables, "-o", text}, 1, "--fit pdf");
+    expect_failure({"export", file, "--target", "glsl", "--tables", tables, "-o", text}, 1, "--fit variance");
     EXPECT_FALSE(std::filesystem::exists(tables));
     EXPECT_FALSE(std::filesystem::exists(text));
     const std::string golden = std::string(ACDF_TEST_DIR) + "/golden/v1.0/";
     for (const auto& entry : std::filesystem::directory_iterator(golden)) {
         if (entry.path().extension() != ".acdf") continue;
         File opened;
-        ASSERT_TRUE(File::open(entry.path().c_str(), opened).ok());
+        ASSERT_TRUE(File::open(entry.path().c_str(), opened, acdf::with_curves()).ok());
         ShaderTables made;
         if (opened.kind() == ACDF_KIND_ENVIRONMENT || opened.kind() == ACDF_KIND_LOCAL) continue;
-        if (ShaderTables::make(opened, made).ok()) continue; // of a BRDF without tilts
+        if (ShaderTables::make(opened, made).ok()) continue; // of a BRDF of halvings
         expect_failure({"export", entry.path(), "--target", "c"}, 1, "no tables for shaders");
     }
 }

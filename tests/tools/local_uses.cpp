@@ -5,6 +5,7 @@
 #include "tests/tools/run.h"
 #include "tools/plot/local.h"
 
+#include <acdf/curves/curves.h>
 #include <nlohmann/json.hpp>
 
 #include <sstream>
@@ -172,7 +173,7 @@ TEST_F(LocalCommands, PlotHoldsTheReadersPdfs) {
         ASSERT_EQ(result.code, 0) << result.err;
         const LoadedImage image = load_image(exr);
         File plotted;
-        ASSERT_TRUE(File::open(path.c_str(), plotted).ok());
+        ASSERT_TRUE(File::open(path.c_str(), plotted, acdf::with_curves()).ok());
         const float n[3] = {-1.0f, 2.0f, 0.5f};
         for (int y = 0; y < 30; ++y)
             for (int x = 0; x < 60; ++x) {

@@ -6,6 +6,7 @@
 
 #include "build/probe/projection.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/renderers.h>
 #include <acdf/views.h>
@@ -62,7 +63,7 @@ protected:
     }
     std::uint32_t parameterization() const {
         File file;
-        EXPECT_TRUE(File::open(output.c_str(), file).ok());
+        EXPECT_TRUE(File::open(output.c_str(), file, acdf::with_curves()).ok());
         return file.description().parameterization;
     }
     std::string messages;
@@ -198,14 +199,14 @@ TEST_F(OctahedralCommand, PresetsSetDomainFilterAndChannel) {
     EXPECT_EQ(report["domain"], "octahedral");
     EXPECT_NE(messages.find("(-x, y, z)"), std::string::npos) << messages;
     File file;
-    ASSERT_TRUE(File::open(output.c_str(), file).ok());
+    ASSERT_TRUE(File::open(output.c_str(), file, acdf::with_curves()).ok());
     EXPECT_EQ(file.description().filter, std::uint32_t{ACDF_FILTER_NEAREST});
     EXPECT_DOUBLE_EQ(file.description().channel_weights[0], 1.0 / 3.0);
     made(latlong, {"--for", "mitsuba3", "--filter", "nearest"});
-    ASSERT_TRUE(File::open(output.c_str(), file).ok());
+    ASSERT_TRUE(File::open(output.c_str(), file, acdf::with_curves()).ok());
     EXPECT_EQ(file.description().filter, std::uint32_t{ACDF_FILTER_NEAREST}) << "what is given by itself wins";
     made(latlong, {"--for", "mitsuba3"});
-    ASSERT_TRUE(File::open(output.c_str(), file).ok());
+    ASSERT_TRUE(File::open(output.c_str(), file, acdf::with_curves()).ok());
     EXPECT_EQ(file.description().filter, std::uint32_t{ACDF_FILTER_BILINEAR});
     const Result unknown = run_acdf({"env", latlong, "-o", output, "--force", "--for", "povray"});
     EXPECT_EQ(unknown.code, 2);
@@ -225,24 +226,24 @@ TEST_F(OctahedralCommand, PresetsCoverWhatRowsThatRepeatShowAtThePoles) {
         const bool repeats = builder::find_renderer(renderer)->target.wrap == builder::Wrap::repeat;
         made(source, {"--for", renderer, "--mis", "none"});
         File file;
-        ASSERT_TRUE(File::open(output.c_str(), file).ok());
+        ASSERT_TRUE(File::open(output.c_str(), file, acdf::with_curves()).ok());
         EXPECT_EQ(file.environment().pdf(zenith) > 0.0f, repeats) << renderer;
         const Text options = file.metadata("fit.options");
         EXPECT_EQ(std::string(options.data, options.size).find("--wrap repeat") != std::string::npos, repeats);
         EXPECT_EQ(measured(source)["support_violations"], 0);
         if (!repeats) continue;
         made(source, {"--for", renderer, "--mis", "none"}, "local");
-        ASSERT_TRUE(File::open(output.c_str(), file).ok());
+        ASSERT_TRUE(File::open(output.c_str(), file, acdf::with_curves()).ok());
         EXPECT_GT(file.local().pdf(up, zenith), 0.0f) << renderer;
     }
     made(source, {"--for", "cycles", "--mis", "none", "--wrap", "clamp"});
     File file;
-    ASSERT_TRUE(File::open(output.c_str(), file).ok());
+    ASSERT_TRUE(File::open(output.c_str(), file, acdf::with_curves()).ok());
     EXPECT_EQ(file.environment().pdf(zenith), 0.0f) << "what is given by itself wins";
     // On another grid than the map's own.
     const json square_file = made(source, {"--for", "cycles", "--mis", "none", "--domain", "octahedral"});
     EXPECT_EQ(square_file["support_violations"], 0);
-    ASSERT_TRUE(File::open(output.c_str(), file).ok());
+    ASSERT_TRUE(File::open(output.c_str(), file, acdf::with_curves()).ok());
     EXPECT_GT(file.environment().pdf(zenith), 0.0f);
     EXPECT_NEAR(measured(source)["relative_variance"], square_file["relative_variance"], 1e-9);
 }

@@ -9,7 +9,7 @@ namespace {
 TEST(ViewCommand, WritesAPageThatHoldsTheFile) {
     const Folder folder;
     const std::string sky = folder / "a&b.acdf", page = folder / "page.html";
-    write_bytes(sky, small_environment());
+    write_bytes(sky, small_halvings());
     const Result made = run_acdf({"view", sky, "-o", page});
     if (made.code != 0) {
         EXPECT_EQ(made.code, 1);

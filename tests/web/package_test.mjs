@@ -7,8 +7,9 @@ import {AcdfError, createTablesBuffer, loadReader, tablesTexture, TABLES_WIDTH} 
 import {glsl, wgsl} from "acdf/shaders";
 
 const reader = await loadReader();
-const golden = readdirSync(process.env.GOLDEN).filter(name => name.endsWith(".acdf"));
 const goldenBytes = name => readFileSync(`${process.env.GOLDEN}/${name}`);
+const golden = readdirSync(process.env.GOLDEN)
+    .filter(name => name.endsWith(".acdf") && goldenBytes(name).includes("HALV")); // of curves there is no reader
 
 // Columns u0 u1 x y z pdf of `acdf sample`, whose digits give back each float.
 function samplesOf(csv) {
@@ -54,7 +55,7 @@ test("a map integrates to 1, and shows the densities of its texels", () => {
 });
 
 test("cells fill the grid, each point once", () => {
-    for (const bytes of [readFileSync("sky.acdf"), goldenBytes("deep.acdf")]) { // of halvings, of curves
+    for (const bytes of [readFileSync("sky.acdf"), goldenBytes("halvings_octahedral.acdf")]) {
         const file = reader.open(bytes), cells = file.cells(), {axes} = file.info;
         let area = 0;
         for (let i = 0; i < cells.length; i += 4) area += (cells[i + 1] - cells[i]) * (cells[i + 3] - cells[i + 2]);
@@ -72,7 +73,7 @@ test("tables for shaders are those of acdf export", () => {
     assert.match(glsl, /AcdfShaderView acdf_view\(vec3 wo\)/);
     assert.deepEqual(Buffer.from(reader.open(readFileSync("local.acdf")).shaderTables().buffer), readFileSync("local.bin"));
     assert.ok(reader.open(goldenBytes("brdf_mirrored.acdf")).shaderTables().length > 32);
-    assert.throws(() => reader.open(goldenBytes("tilted.acdf")).shaderTables(), /tilt/);
+    assert.throws(() => reader.open(goldenBytes("tilted.acdf")), /curves/);
     const {width, height, data} = tablesTexture(words);
     assert.equal(width, TABLES_WIDTH);
     assert.equal(data.length, width * height);

@@ -10,6 +10,8 @@
 #include "tools/plot/image.h"
 #include "tools/plot/local.h"
 
+#include <acdf/curves/curves.h>
+
 #include <cstdio>
 #include <filesystem>
 
@@ -53,7 +55,7 @@ std::string source_thumbnail(const JobResult& job, const BatchJob& planned, cons
 /// A pdf as a small picture; empty where the file cannot be read.
 std::string thumbnail(const std::string& path, const std::string& name) {
     File file;
-    if (!File::open(path.c_str(), file).ok()) return "";
+    if (!File::open(path.c_str(), file, with_curves()).ok()) return "";
     PdfImage image;
     std::string shows = "pdf of " + name;
     if (file.kind() == ACDF_KIND_BRDF) {

@@ -10,6 +10,7 @@
 #include "tools/cli/validation.h"
 #include "tools/commands.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/visibility/visibility.h>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -98,7 +99,7 @@ std::string why_due(const std::vector<std::uint8_t>& bytes, const BatchJob& job,
                std::to_string(header.version_minor);
     if (std::string fault = first_fault(bytes); !fault.empty()) return "its output is not valid (" + fault + ")";
     File file;
-    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
+    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file, with_curves()); !status.ok())
         return std::string("its output cannot be read (") + status.message + ")";
     if (file.kind() != file_kind(job)) return "its output is of kind " + build::kind_name(file.kind());
     VisibleLocalView view;

@@ -5,6 +5,7 @@
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/layout.h>
 #include <acdf/visibility/visibility.h>
 
@@ -85,7 +86,7 @@ namespace {
 /// As File::from_memory, and checks what rooms beside the reader read of the file.
 Status open_bytes(const std::uint8_t* data, std::size_t size, File& file, IndexedEnvironment& maps) {
     VisibleLocalView view;
-    const Status status = File::from_memory(data, size, file);
+    const Status status = File::from_memory(data, size, file, with_curves());
     if (!status.ok()) return status;
     if (file.kind() == ACDF_KIND_LOCAL) return VisibleLocalView::of(file, view);
     return file.kind() == ACDF_KIND_INDEXED ? IndexedEnvironment::open(file, maps) : status;

@@ -10,9 +10,10 @@ Verdict validate_all(const std::vector<std::uint8_t>& bytes, const std::function
     const FindingSink sink = [](const Finding& finding, void* taker) -> bool {
         return (*static_cast<const std::function<bool(const Finding&)>*>(taker))(finding);
     };
-    Verdict verdict = validate(bytes.data(), bytes.size(), sink, context);
+    Verdict verdict = validate(bytes.data(), bytes.size(), sink, context, with_curves());
     File file;
-    if (!verdict.valid() || !File::from_memory(bytes.data(), bytes.size(), file).ok()) return verdict;
+    if (!verdict.valid() || !File::from_memory(bytes.data(), bytes.size(), file, with_curves()).ok())
+        return verdict;
     AcdfVisibleLocal view = {};
     const Verdict beside = file.kind() == ACDF_KIND_INDEXED ? validate_maps(file, sink, context)
                                                             : check_visibility(*file.get(), sink, context, view);

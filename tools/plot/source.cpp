@@ -12,6 +12,7 @@
 #include "visibility/visible_view.h"
 
 #include <CLI/CLI.hpp>
+#include <acdf/curves/tree.h>
 
 #include <algorithm>
 #include <cstdio>

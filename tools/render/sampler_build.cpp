@@ -17,6 +17,8 @@
 #include "tools/render/learned.h"
 #include "tools/render/portals.h"
 
+#include <acdf/curves/curves.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -44,7 +46,8 @@ constexpr std::uint32_t kPortalCells = 512;
 Table file_table(std::vector<std::uint8_t> bytes) {
     auto loaded = std::make_shared<LoadedFile>();
     loaded->bytes = std::move(bytes);
-    const Status status = File::from_memory(loaded->bytes.data(), loaded->bytes.size(), loaded->file);
+    const Status status =
+        File::from_memory(loaded->bytes.data(), loaded->bytes.size(), loaded->file, with_curves());
     if (!status.ok())
         throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
     LightSamplerPtr sampler = measure::file_sampler(loaded->file);

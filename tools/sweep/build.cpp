@@ -10,6 +10,8 @@
 #include "tools/sweep/advice.h"
 #include "tools/sweep/timing.h"
 
+#include <acdf/curves/curves.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -20,7 +22,7 @@ namespace acdf::tools {
 const char* to_string(SweepKind kind) { return kind == SweepKind::probe ? "probe" : "brdf"; }
 
 StoredFile::StoredFile(std::vector<std::uint8_t> made) : bytes(std::move(made)) {
-    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
+    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file, with_curves()); !status.ok())
         throw std::logic_error(std::string("the reader refuses the file just made: ") + status.message);
 }
 

@@ -9,6 +9,7 @@
 #include "tools/view/page.h"
 
 #include <CLI/CLI.hpp>
+#include <acdf/curves/curves.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -68,8 +69,11 @@ bool open_in_browser(const std::string& path) {
 
 void run(const ViewArguments& options) {
     const LoadedFile loaded = load_file(options.file);
-    const std::string name = options.file == "-" ? "stdin" : input::file_name(options.file),
-                      page = page_with(viewer_page(), name, loaded.bytes);
+    const std::string name = options.file == "-" ? "stdin" : input::file_name(options.file);
+    std::uint32_t units;
+    if (acdf_curves_tree(loaded.file.get(), &units))
+        throw Failure(name + ": the viewer reads no curves; make the file with --fit variance");
+    const std::string page = page_with(viewer_page(), name, loaded.bytes);
     const bool opens = options.output.empty();
     const std::string path = opens ? temporary_page() : options.output;
     write_output(path, {page.begin(), page.end()}, opens || options.force, {options.file});

@@ -1,5 +1,7 @@
 #include "build/accuracy/cells.h"
 
+#include <acdf/curves/curves.h>
+
 #include <algorithm>
 #include <iterator>
 
@@ -49,7 +51,8 @@ void descend(const AcdfHalving* nodes, std::uint32_t at, const AcdfSpan* steps, 
     const Halved<2> of = {{steps[0], steps[1]}, {box[0], box[1]}};
     descend(nodes, at, of, [&](const Halved<2>& leaf) {
         Cell cell;
-        acdf_halved_ranges(leaf.box, cell.range);
+        for (std::uint32_t axis = 0; axis < 2; ++axis)
+            cell.range[axis] = {leaf.box[axis].end[0], leaf.box[axis].end[1], 0.0};
         cell.probability = acdf_span_share(&leaf.steps[0]) * acdf_span_share(&leaf.steps[1]);
         visit(cell);
     });
@@ -59,7 +62,7 @@ template <std::size_t Axes>
 CellOf<Axes> whole(const File& file) {
     CellOf<Axes> cell = {};
     for (std::uint32_t axis = 0; axis < std::min<std::size_t>(Axes, file.description().axis_count); ++axis)
-        cell.range[axis] = {0, file.axis(axis).resolution, 0.0};
+        cell.range[axis] = acdf_whole_axis(file.axis(axis).resolution);
     cell.probability = 1.0;
     return cell;
 }
@@ -68,7 +71,7 @@ CellOf<Axes> whole(const File& file) {
 
 void for_each_cell(const EnvironmentView& environment, const std::function<void(const Cell&)>& visit) {
     const AcdfEnvironment& data = environment.data();
-    Cell whole = {{{0, data.columns, 0.0}, {0, data.rows, 0.0}}, 1.0};
+    const Cell whole = {{acdf_whole_axis(data.columns), acdf_whole_axis(data.rows)}, 1.0};
     if (!data.halved) return descend(data.tree, data.root, whole, visit);
     const std::uint32_t resolution[2] = {data.columns, data.rows};
     AcdfSpan steps[2], box[2];
@@ -77,7 +80,8 @@ void for_each_cell(const EnvironmentView& environment, const std::function<void(
 }
 
 void for_each_cell(const File& file, std::uint32_t root, const std::function<void(const Cell&)>& visit) {
-    descend(file.tree(), root, whole<2>(file), visit);
+    std::uint32_t units;
+    descend(acdf_curves_tree(file.get(), &units), root, whole<2>(file), visit);
 }
 
 std::vector<std::array<AcdfRange, 2>> tile_boxes(const File& file) {

@@ -1,6 +1,7 @@
 // The cells of a stored tree, one by one: what exact summation and pictures are made from.
 #pragma once
 
+#include <acdf/curves/tree.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -14,10 +15,15 @@ namespace acdf::build {
 /// A cell of a tree of up to `Axes` axes: its range on each in grid positions, and its probability.
 template <std::size_t Axes>
 struct CellOf {
-    AcdfRange range[Axes];
+    AcdfTiltedRange range[Axes];
     double probability = 0.0; ///< exactly what acdf_tree_sample returns there
 };
 using Cell = CellOf<2>;
+
+/// A cell's ranges without their tilts.
+inline std::array<AcdfRange, 2> untilted(const AcdfTiltedRange* range) {
+    return {acdf_untilted(&range[0]), acdf_untilted(&range[1])};
+}
 
 /// A cell of a table: its box on each sampled axis from 0, in grid positions, and its probability.
 struct TableCell {

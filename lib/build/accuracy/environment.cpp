@@ -18,7 +18,7 @@ namespace {
 using compress::Sum;
 using compress::Target;
 
-double range_measure(const AcdfRange& range, const std::vector<double>& measure) {
+double range_measure(const AcdfTiltedRange& range, const std::vector<double>& measure) {
     Sum sum;
     for (std::uint32_t i = range.low; i < range.high; ++i) sum.add(measure[i]);
     return sum.value();
@@ -30,7 +30,7 @@ public:
     CellSummer(const Target& target, double total) : target_(target), total_(total) {}
 
     void add(const Cell& cell, Sums& sums) {
-        const AcdfRange &columns = cell.range[0], &rows = cell.range[1];
+        const AcdfTiltedRange &columns = cell.range[0], &rows = cell.range[1];
         const double density = cell.probability / (range_measure(columns, target_.column_measure) *
                                                    range_measure(rows, target_.row_measure));
         range_means(columns, target_.column_measure, column_means_);
@@ -40,7 +40,7 @@ public:
     }
 
 private:
-    void add_row(std::uint32_t r, double density, const AcdfRange& columns, const StepMeans& row,
+    void add_row(std::uint32_t r, double density, const AcdfTiltedRange& columns, const StepMeans& row,
                  Sums& sums) const {
         const float* values = target_.row(r);
         for (std::uint32_t c = columns.low; c < columns.high; ++c) {
@@ -89,7 +89,7 @@ Work divide(const EnvironmentView& environment) {
             work.begin.push_back(work.cells.size());
             texels = 0;
         }
-        const AcdfRange &columns = cell.range[0], &rows = cell.range[1];
+        const AcdfTiltedRange &columns = cell.range[0], &rows = cell.range[1];
         texels += std::uint64_t{columns.high - columns.low} * (rows.high - rows.low);
         work.cells.push_back(cell);
     });

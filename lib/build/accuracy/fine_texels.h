@@ -4,7 +4,7 @@
 
 #include "compress/target.h"
 
-#include <acdf/sample.h>
+#include <acdf/curves/tree.h>
 
 #include <algorithm>
 #include <array>
@@ -37,8 +37,8 @@ public:
 
     const compress::Target& target() const { return fine_.values.empty() ? coarse_ : fine_; }
     /// A box of the map's texels in those of target().
-    std::array<AcdfRange, 2> box(const AcdfRange* range) const {
-        std::array<AcdfRange, 2> out{range[0], range[1]};
+    std::array<AcdfTiltedRange, 2> box(const AcdfTiltedRange* range) const {
+        std::array<AcdfTiltedRange, 2> out{range[0], range[1]};
         for (std::size_t k = 0; k < 2; ++k) {
             out[k].low *= parts_[k];
             out[k].high *= parts_[k];

@@ -70,10 +70,10 @@ private:
         return target_.row_measure[r] * target_.column_measure[c];
     }
 
-    void fill(const AcdfRange* cell, double probability, std::uint32_t tile, TilePicture& out) const {
+    void fill(const AcdfTiltedRange* cell, double probability, std::uint32_t tile, TilePicture& out) const {
         const AcdfGrid grid = acdf_environment_grid(&local_.environment);
-        const double omega = acdf_grid_solid_angle(&grid, cell);
-        const std::array<AcdfRange, 2> range = texels_.box(cell);
+        const double omega = acdf_grid_solid_angle(&grid, untilted(cell).data());
+        const std::array<AcdfTiltedRange, 2> range = texels_.box(cell);
         for (std::uint32_t r = range[1].low; r < range[1].high; ++r) {
             const std::size_t row = std::size_t{r} * target_.columns;
             std::fill(out.density.begin() + std::ptrdiff_t(row + range[0].low),
@@ -84,7 +84,7 @@ private:
         if (range[0].tilt != 0.0 || range[1].tilt != 0.0) tilt(range.data(), out);
     }
 
-    void tilt(const AcdfRange* range, TilePicture& out) const {
+    void tilt(const AcdfTiltedRange* range, TilePicture& out) const {
         out.slope.resize(out.density.size());
         std::vector<StepMeans> columns, rows;
         range_means(range[0], target_.column_measure, columns);

@@ -24,8 +24,8 @@ std::vector<double> densities(const File& file, const FineTexels& texels) {
     for_each_cell(file.environment(), [&](const Cell& cell) {
         if (cell.range[0].tilt != 0.0 || cell.range[1].tilt != 0.0)
             throw std::invalid_argument("tilted curves in a file for an MIS partner");
-        const double p = cell.probability / acdf_grid_solid_angle(&grid, cell.range);
-        const std::array<AcdfRange, 2> range = texels.box(cell.range);
+        const double p = cell.probability / acdf_grid_solid_angle(&grid, untilted(cell.range).data());
+        const std::array<AcdfTiltedRange, 2> range = texels.box(cell.range);
         for (std::uint32_t r = range[1].low; r < range[1].high; ++r)
             for (std::uint32_t c = range[0].low; c < range[0].high; ++c)
                 out[std::size_t{r} * target.columns + c] = p;

@@ -23,7 +23,7 @@ StepMeans step_means(double g0, double g1) {
 
 } // namespace
 
-void range_means(const AcdfRange& range, const std::vector<double>& measure, std::vector<StepMeans>& out) {
+void range_means(const AcdfTiltedRange& range, const std::vector<double>& measure, std::vector<StepMeans>& out) {
     out.assign(range.high - range.low, StepMeans{});
     if (range.tilt == 0.0) return;
     compress::Sum length;

@@ -1,7 +1,7 @@
 // Pdfs that are linear across a cell, one grid step after the other.
 #pragma once
 
-#include <acdf/sample.h>
+#include <acdf/curves/tree.h>
 
 #include <cstdint>
 #include <vector>
@@ -14,6 +14,6 @@ struct StepMeans {
 };
 
 /// StepMeans of each grid step in a cell's range on one axis, whose steps have `measure`.
-void range_means(const AcdfRange& range, const std::vector<double>& measure, std::vector<StepMeans>& out);
+void range_means(const AcdfTiltedRange& range, const std::vector<double>& measure, std::vector<StepMeans>& out);
 
 } // namespace acdf::build

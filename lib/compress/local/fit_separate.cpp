@@ -3,6 +3,7 @@
 #include "compress/local/light.h"
 #include "compress/parallel.h"
 
+#include <acdf/curves/normals.h>
 #include <acdf/local.h>
 
 #include <algorithm>

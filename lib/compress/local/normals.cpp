@@ -1,5 +1,7 @@
 #include "compress/local/normals.h"
 
+#include <acdf/curves/normals.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>

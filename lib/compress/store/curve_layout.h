@@ -1,8 +1,8 @@
 // Where curves lie in chunk TREE (format/SPEC.md, section 7.2).
 #pragma once
 
+#include <acdf/curves/tree.h>
 #include <acdf/layout.h>
-#include <acdf/sample.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -2,7 +2,7 @@
 #include "compress/store/quantize.h"
 #include "compress/store/store.h"
 
-#include <acdf/sample.h>
+#include <acdf/curves/tree.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "compress/store/planes.h"
 
-#include <acdf/sample.h>
+#include <acdf/curves/tree.h>
 
 #include <algorithm>
 #include <array>

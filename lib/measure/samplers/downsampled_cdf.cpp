@@ -56,8 +56,8 @@ AcdfDirectionSample DownsampledCdf::sample(double u0, double u1) const {
     const FullCdf::Draw draw = cdf_.sample(static_cast<float>(u0), static_cast<float>(u1));
     const auto column = static_cast<std::uint32_t>(draw.column), row = static_cast<std::uint32_t>(draw.row);
     const AcdfRange range[2] = {
-        {border(column, grid_.columns(), columns_), border(column + 1, grid_.columns(), columns_), 0.0},
-        {border(row, grid_.rows(), rows_), border(row + 1, grid_.rows(), rows_), 0.0}};
+        {border(column, grid_.columns(), columns_), border(column + 1, grid_.columns(), columns_)},
+        {border(row, grid_.rows(), rows_), border(row + 1, grid_.rows(), rows_)}};
     return grid_.place(range, draw.column - column, draw.row - row, draw.pdf);
 }
 

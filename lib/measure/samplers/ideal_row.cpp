@@ -12,7 +12,7 @@ IdealRows::IdealRows(const compress::Target& target, double shares)
     for (std::uint32_t r = 0; r < target.rows; ++r) {
         measure_.push_back(target.row_measure[r] * target.column_measure[0]);
         for (std::uint32_t c = 0; c < target.columns; ++c) {
-            const AcdfRange range[2] = {{c, c + 1, 0.0}, {r, r + 1, 0.0}};
+            const AcdfRange range[2] = {{c, c + 1}, {r, r + 1}};
             const double half[2] = {0.5, 0.5};
             const AcdfDirectionSample middle = acdf_grid_position(&grid, range, half, 1.0);
             middle_.push_back({middle.direction[0], middle.direction[1], middle.direction[2]});

@@ -37,7 +37,7 @@ public:
         return out;
     }
     AcdfDirectionSample place(std::uint32_t column, std::uint32_t row, double u0, double u1, double pdf) const {
-        const AcdfRange range[2] = {{column, column + 1, 0.0}, {row, row + 1, 0.0}};
+        const AcdfRange range[2] = {{column, column + 1}, {row, row + 1}};
         return place(range, u0, u1, pdf);
     }
     AcdfDirectionSample place(const FullCdf::Draw& draw) const {

@@ -95,7 +95,7 @@ public:
         acdf_sphere_ranges(grid.columns, grid.rows, range);
         if (!find(square, range, strata)) return false;
         acdf_grid_fractions(&grid, direction, position, range, t);
-        for (int axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t[axis]);
+        for (int axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], t[axis]);
         return true;
     }
 
@@ -108,9 +108,8 @@ private:
             acdf_halved_ranges(box, range);
             return p > 0.0;
         }
-        if (local_.environment.halved)
-            return acdf_environment_halved_find(&local_.environment, square, range, strata) > 0.0;
-        return acdf_tree_find(local_.environment.tree, point_.by.root, square, range, strata) > 0.0;
+        const AcdfEnvironment tree = acdf_local_tree(&local_, &point_);
+        return acdf_environment_find_square(&tree, square, range, strata) > 0.0;
     }
 
     AcdfLocal local_;

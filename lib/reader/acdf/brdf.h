@@ -17,14 +17,6 @@
 extern "C" {
 #endif
 
-/* The whole square of half-vectors, before a tree narrows it. */
-ACDF_FN void acdf_brdf_whole(const AcdfBrdf* brdf, AcdfRange range[2]) {
-    range[0].low = range[1].low = 0;
-    range[0].high = brdf->columns;
-    range[1].high = brdf->rows;
-    range[0].tilt = range[1].tilt = 0.0;
-}
-
 /* A cell of a tree of halvings as a range of positions. */
 ACDF_FN void acdf_brdf_halved_range(const AcdfBrdf* brdf, const AcdfSpan box[2], AcdfRange range[2]) {
     const double* begins = acdf_halved_heights(brdf->halved);
@@ -39,12 +31,8 @@ ACDF_FN double acdf_brdf_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, co
     uint32_t square[2];
     AcdfSpan box[2];
     double p;
+    ACDF_RETURN_CURVES(brdf, brdf_find(brdf, view, place, range, strata));
     square[0] = acdf_brdf_step(place->position[0], brdf->columns);
-    if (!brdf->halved) {
-        square[1] = acdf_brdf_step(place->position[1], brdf->rows);
-        acdf_brdf_whole(brdf, range);
-        return acdf_tree_find(brdf->tree, view->root, square, range, strata);
-    }
     if (view->mix.count == 0) return 0.0;
     square[1] = acdf_half_row_of(acdf_halved_heights(brdf->halved), place->position[1]);
     p = strata ? acdf_rows_strata(brdf->rows_of_views, brdf->halved, &view->mix, square, box, strata)
@@ -58,22 +46,23 @@ ACDF_FN double acdf_brdf_fraction(const AcdfRange* range, double position) {
     return acdf_clamp((position - (double)range->low) / (double)(range->high - range->low), 0.0, 1.0);
 }
 
-/* The pdf of wi: that of its position in a cell of probability p (0: none), and the cosine's share. */
-ACDF_FN float acdf_brdf_cell_pdf(const AcdfBrdf* brdf, double p, const AcdfRange range[2],
-                                 const AcdfBrdfPosition* place, const float wi[3]) {
+/* The pdf of wi with the cosine's share: `pdf` is that of the table, in a cell of probability p (0: none). */
+ACDF_INLINE float acdf_brdf_whole_pdf(const AcdfBrdf* brdf, double p, double pdf, const float wi[3]) {
     const double floor = (double)brdf->views->diffuse_share;
-    double pdf = 0.0;
-    int axis;
-    if (p > 0.0) {
-        const double area = (double)(range[0].high - range[0].low) * (double)(range[1].high - range[1].low);
-        pdf = acdf_brdf_mean_pdf(brdf, p, area, place);
-        for (axis = 0; axis < 2; ++axis)
-            if (range[axis].tilt != 0.0)
-                pdf *= acdf_tilt_pdf(range[axis].tilt, acdf_brdf_fraction(&range[axis], place->position[axis]));
-    }
     if (floor > 0.0) pdf = (1.0 - floor) * pdf + (wi[2] > 0.0f ? floor / ACDF_PI * (double)wi[2] : 0.0);
     else if (!(p > 0.0)) return 0.0f;
     return p > 0.0 || pdf > 1.17549435e-38 ? acdf_brdf_positive(pdf) : 0.0f;
+}
+
+/* The pdf of wi, whose position lies in a cell of probability p (0: none). */
+ACDF_FN float acdf_brdf_cell_pdf(const AcdfBrdf* brdf, double p, const AcdfRange range[2],
+                                 const AcdfBrdfPosition* place, const float wi[3]) {
+    double pdf = 0.0;
+    if (p > 0.0) {
+        const double area = (double)(range[0].high - range[0].low) * (double)(range[1].high - range[1].low);
+        pdf = acdf_brdf_mean_pdf(brdf, p, area, place);
+    }
+    return acdf_brdf_whole_pdf(brdf, p, pdf, wi);
 }
 
 /* acdf_brdf_pdf for a view that serves several directions. */
@@ -81,6 +70,7 @@ ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view,
     AcdfBrdfPosition place;
     AcdfRange range[2];
     double sign, p;
+    ACDF_RETURN_CURVES(brdf, brdf_pdf(brdf, view, wi));
     if (!acdf_brdf_half_position(brdf, view, wi, &place, &sign)) return 0.0f;
     p = acdf_brdf_find(brdf, view, &place, range, 0);
     return acdf_brdf_cell_pdf(brdf, p, range, &place, wi);
@@ -123,10 +113,17 @@ ACDF_FN int acdf_brdf_begin(const AcdfBrdf* brdf, const AcdfBrdfView* view, doub
         u[1] = (u[1] - floor) / (1.0 - floor);
     }
     if (acdf_brdf_mirrored(brdf)) *sign = acdf_brdf_mirror(&u[0]);
-    return !brdf->halved || view->mix.count > 0;
+    return 1;
 }
 
-/* Visibility wi in a cell of probability p; u is what is left of the random numbers. */
+/* The random numbers that acdf_brdf_begin makes `u` of. */
+ACDF_INLINE void acdf_brdf_unprepare(const AcdfBrdf* brdf, double sign, double u[2]) {
+    const double floor = (double)brdf->views->diffuse_share;
+    if (acdf_brdf_mirrored(brdf)) u[0] = 0.5 + 0.5 * sign * u[0];
+    u[1] = floor + (1.0 - floor) * u[1];
+}
+
+/* Samples wi in a cell of probability p; u is what is left of the random numbers. */
 ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfRange range[2],
                                           const double u[2], double sign, double p) {
     const double nothing[2] = {0.0, 0.0};
@@ -134,15 +131,11 @@ ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfVi
     AcdfBrdfPosition place;
     double t[2], position[2], reach[2], half[3];
     int axis, attempt;
-    for (axis = 0; axis < 2; ++axis) {
-        t[axis] = acdf_tilt_sample(range[axis].tilt, u[axis]);
-        t[axis] = acdf_clamp(t[axis], 0x1p-30, 1.0 - 0x1p-30);
-    }
+    for (axis = 0; axis < 2; ++axis) t[axis] = acdf_clamp(u[axis], 0x1p-30, 1.0 - 0x1p-30);
     for (axis = 0; axis < 2; ++axis)
         position[axis] = (double)range[axis].low + t[axis] * (double)(range[axis].high - range[axis].low);
     acdf_brdf_reflect(brdf, view, position, sign, out.direction, reach);
-    if (range[0].tilt == 0.0 && range[1].tilt == 0.0 && acdf_brdf_inside(range, position, reach) &&
-        acdf_brdf_half(view, out.direction, half, &place)) {
+    if (acdf_brdf_inside(range, position, reach) && acdf_brdf_half(view, out.direction, half, &place)) {
         place.position[0] = position[0];
         place.position[1] = position[1];
         out.pdf = acdf_brdf_cell_pdf(brdf, p, range, &place, out.direction);
@@ -172,12 +165,7 @@ ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfVi
 /* The cell that random numbers lead to; they are rescaled to [0, 1] in it. Returns its probability. */
 ACDF_FN double acdf_brdf_choose(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u[2], AcdfRange range[2]) {
     AcdfSpan box[2];
-    double p;
-    if (!brdf->halved) {
-        acdf_brdf_whole(brdf, range);
-        return acdf_tree_sample(brdf->tree, view->root, u, range);
-    }
-    p = acdf_rows_choose(brdf->rows_of_views, brdf->halved, &view->mix, u, box);
+    const double p = acdf_rows_choose(brdf->rows_of_views, brdf->halved, &view->mix, u, box);
     acdf_brdf_halved_range(brdf, box, range);
     return p;
 }
@@ -188,7 +176,8 @@ ACDF_FN AcdfDirectionSample acdf_brdf_view_sample(const AcdfBrdf* brdf, const Ac
     AcdfDirectionSample out;
     AcdfRange range[2];
     double u[2], sign, p;
-    if (!acdf_brdf_begin(brdf, view, u0, u1, u, &sign, &out)) return out;
+    ACDF_RETURN_CURVES(brdf, brdf_sample(brdf, view, u0, u1));
+    if (!acdf_brdf_begin(brdf, view, u0, u1, u, &sign, &out) || view->mix.count == 0) return out;
     p = acdf_brdf_choose(brdf, view, u, range);
     return acdf_brdf_end(brdf, view, range, u, sign, p);
 }
@@ -254,13 +243,13 @@ ACDF_FN int acdf_brdf_stays(const AcdfBrdf* brdf, const AcdfBrdfView* view, cons
  * samples that rounding would carry over a border into their cell, by an eighth of it or more. For those, u may
  * differ from the numbers that sampled them, and samples them as well. */
 ACDF_FN int acdf_brdf_invert(const AcdfBrdf* brdf, const float wo[3], const float wi[3], double u[2]) {
-    const double floor = (double)brdf->views->diffuse_share;
     AcdfBrdfView view;
     AcdfBrdfPosition place;
     AcdfRange range[2];
     AcdfStratum strata[2];
     double sign, margin[2] = {0.0, 0.0}, t[2];
     int axis;
+    ACDF_RETURN_CURVES(brdf, brdf_invert(brdf, wo, wi, u));
     strata[0].low = strata[1].low = 0.0;
     strata[0].width = strata[1].width = 1.0;
     if (!acdf_brdf_view(brdf, wo, &view) || !acdf_brdf_half_position(brdf, &view, wi, &place, &sign)) return 0;
@@ -268,9 +257,8 @@ ACDF_FN int acdf_brdf_invert(const AcdfBrdf* brdf, const float wo[3], const floa
     acdf_brdf_refine(brdf, &view, range, wi, place.position, &sign);
     if (!acdf_brdf_stays(brdf, &view, range, place.position, sign, margin, t))
         acdf_brdf_stays(brdf, &view, range, place.position, sign, margin, t);
-    for (axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t[axis]);
-    if (acdf_brdf_mirrored(brdf)) u[0] = 0.5 + 0.5 * sign * u[0];
-    u[1] = floor + (1.0 - floor) * u[1];
+    for (axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], t[axis]);
+    acdf_brdf_unprepare(brdf, sign, u);
     return 1;
 }
 

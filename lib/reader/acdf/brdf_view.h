@@ -3,22 +3,22 @@
 #define ACDF_BRDF_VIEW_H
 
 #include <acdf/normal_rows.h>
-#include <acdf/tree.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 typedef struct AcdfBrdf {
-    const AcdfHalvedTree* halved; /* what all views share below their rows; null: each has a tree of curves */
+    const AcdfHalvedTree* halved;        /* what all views share below their rows; null: `curves` samples them */
     const AcdfNormalRows* rows_of_views; /* beside it */
-    const uint8_t* tree;                 /* chunk TREE, of curves */
     const AcdfBin* bins;                 /* theta_count x phi_count */
     const AcdfViews* views;              /* chunk VIEW */
     const float* nodes;                  /* theta_count, behind it */
     uint32_t columns;                    /* steps of axis 0, phi_h */
-    uint32_t rows;                       /* steps of 1 - cos(theta_h), in [0, 1]: of axis 1, of curves */
+    uint32_t rows;                       /* steps of 1 - cos(theta_h), in [0, 1] */
     double total;                        /* sum of the bins' albedos */
+    const AcdfCurves* curves;            /* null: halvings; else */
+    const uint8_t* tree;                 /* chunk TREE */
 } AcdfBrdf;
 
 /* What serves a view: which rows or which tree, and the turn that brings wo into the plane of x and z. */
@@ -27,7 +27,7 @@ typedef struct AcdfBrdfView {
     double turn[2]; /* x and y of a vector to which that turn brings x: wo's own where the file is isotropic */
     double albedo;
     AcdfRowMixture mix; /* of rows of halvings; without rows nothing is sampled */
-    uint32_t root;      /* of curves: the tree of the nearest stored view */
+    uint32_t root;      /* of curves: that of the nearest stored view in chunk TREE */
 } AcdfBrdfView;
 
 ACDF_FN int acdf_brdf_mirrored(const AcdfBrdf* brdf) { return (brdf->views->flags & ACDF_VIEWS_MIRRORED) != 0; }
@@ -95,59 +95,73 @@ ACDF_INLINE int acdf_brdf_turn(const float wo[3], int isotropic, AcdfBrdfView* v
     return acdf_is_unit_square(length2) && z > 0.0;
 }
 
-/* Bins around a view, and what each weighs: by interpolation, and by how much it reflects. */
+/* Stored views around a view, and their weights by interpolation, which may be 0. */
 typedef struct AcdfBrdfNear {
-    uint32_t row[ACDF_MOST_ROWS_MIXED];
+    uint32_t bin[ACDF_MOST_ROWS_MIXED];
     double weight[ACDF_MOST_ROWS_MIXED];
-    double largest;
     int count;
 } AcdfBrdfNear;
 
-ACDF_FN void acdf_brdf_add(const AcdfBrdf* brdf, AcdfBrdfView* view, uint32_t index, double weight,
-                           AcdfBrdfNear* near) {
-    const AcdfBin* bin = &brdf->bins[index];
-    const double reflected = weight * (double)bin->share;
-    view->albedo += reflected * brdf->total;
-    if (!brdf->halved) {
-        if (weight > near->largest) near->largest = weight, view->root = bin->root;
-    } else if (reflected > 0.0) {
-        near->row[near->count] = bin->root;
-        near->weight[near->count++] = reflected;
-    }
+ACDF_INLINE void acdf_brdf_add(uint32_t bin, double weight, AcdfBrdfNear* near) {
+    near->bin[near->count] = bin;
+    near->weight[near->count++] = weight;
 }
 
-/* The bins of an elevation at the azimuths on both sides of wo. */
-ACDF_FN void acdf_brdf_add_around(const AcdfBrdf* brdf, AcdfBrdfView* view, uint32_t node, double weight,
-                                  AcdfBrdfNear* near) {
+/* Those of an elevation at the azimuths on both sides of wo. */
+ACDF_INLINE void acdf_brdf_add_around(const AcdfBrdf* brdf, const AcdfBrdfView* view, uint32_t node, double weight,
+                                      AcdfBrdfNear* near) {
     const uint32_t columns = brdf->views->phi_count;
     /* Column 0: phi = -pi, which is +pi. */
     const double s = (double)columns * (0.5 + 0.5 * acdf_atan2pi(view->wo[1], view->wo[0]));
     const uint32_t whole = (uint32_t)s, column = whole % columns;
     const double part = s - (double)whole;
-    acdf_brdf_add(brdf, view, node * columns + column, weight * (1.0 - part), near);
-    acdf_brdf_add(brdf, view, node * columns + (column + 1 < columns ? column + 1 : 0), weight * part, near);
+    acdf_brdf_add(node * columns + column, weight * (1.0 - part), near);
+    acdf_brdf_add(node * columns + (column + 1 < columns ? column + 1 : 0), weight * part, near);
 }
 
-/* Looks up the stored views around wo. Returns 0 for those that are not unit vectors above the surface. */
-ACDF_FN int acdf_brdf_view(const AcdfBrdf* brdf, const float wo[3], AcdfBrdfView* view) {
+/* Begins a view: its frame and the stored views around it. Returns 0 for wo that are not unit vectors above the
+ * surface. */
+ACDF_INLINE int acdf_brdf_near(const AcdfBrdf* brdf, const float wo[3], AcdfBrdfView* view, AcdfBrdfNear* near) {
     const int isotropic = brdf->views->phi_count == 1;
-    AcdfBrdfNear near;
     uint32_t node[2];
     double t;
     int k;
     if (!acdf_brdf_turn(wo, isotropic, view)) return 0;
-    near.count = 0;
-    near.largest = 0.0;
+    near->count = 0;
     view->mix.count = 0;
     view->albedo = 0.0;
     view->root = 0;
     t = acdf_view_nodes(brdf, view->wo[2], node);
     for (k = 0; k < 2; ++k) {
         const double weight = k ? t : 1.0 - t;
-        if (isotropic) acdf_brdf_add(brdf, view, node[k], weight, &near);
-        else acdf_brdf_add_around(brdf, view, node[k], weight, &near);
+        if (isotropic) acdf_brdf_add(node[k], weight, near);
+        else acdf_brdf_add_around(brdf, view, node[k], weight, near);
     }
-    if (near.count > 0) acdf_rows_mix(brdf->rows_of_views, near.row, near.weight, near.count, &view->mix);
+    return 1;
+}
+
+/* What a stored view reflects, and adds to the albedo. */
+ACDF_INLINE double acdf_brdf_reflected(const AcdfBrdf* brdf, const AcdfBrdfNear* near, int i, AcdfBrdfView* view) {
+    const double reflected = near->weight[i] * (double)brdf->bins[near->bin[i]].share;
+    view->albedo += reflected * brdf->total;
+    return reflected;
+}
+
+/* Looks up the stored views around wo. Returns 0 for those that are not unit vectors above the surface. */
+ACDF_FN int acdf_brdf_view(const AcdfBrdf* brdf, const float wo[3], AcdfBrdfView* view) {
+    AcdfBrdfNear near;
+    uint32_t row[ACDF_MOST_ROWS_MIXED];
+    double weight[ACDF_MOST_ROWS_MIXED];
+    int i, count = 0;
+    ACDF_RETURN_CURVES(brdf, brdf_view(brdf, wo, view));
+    if (!acdf_brdf_near(brdf, wo, view, &near)) return 0;
+    for (i = 0; i < near.count; ++i) {
+        const double reflected = acdf_brdf_reflected(brdf, &near, i, view);
+        if (!(reflected > 0.0)) continue;
+        row[count] = brdf->bins[near.bin[i]].root;
+        weight[count++] = reflected;
+    }
+    if (count > 0) acdf_rows_mix(brdf->rows_of_views, row, weight, count, &view->mix);
     return 1;
 }
 

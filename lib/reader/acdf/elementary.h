@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* This compilation is for a GPU, not for the host around it. */
-#if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__)
+#if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__) || defined(__SYCL_DEVICE_ONLY__)
 #define ACDF_ON_GPU 1
 #endif
 

@@ -21,6 +21,7 @@ struct AcdfLocal;
 struct AcdfBrdf;
 struct AcdfTable;
 struct AcdfMove;
+struct AcdfCurves;
 
 /* What kind of failure; the numbers are stable. */
 typedef enum AcdfErrorCode {
@@ -55,6 +56,8 @@ typedef struct AcdfLoadOptions {
     uint64_t max_file_bytes;     /* 0: 4 GiB */
     uint64_t max_inflated_bytes; /* of compressed chunks together; 0: 1 GiB */
     int plain; /* 1: without runtime tables: nothing is allocated for them, each call descends from the root */
+    const struct AcdfCurves*
+        curves;              /* acdf_curves() reads files of curves; null: they are refused as unsupported */
     AcdfAllocator allocator; /* of what the open file keeps, itself too; all null: the C library's */
 } AcdfLoadOptions;
 AcdfFile* acdf_open_with(const char* path, const AcdfLoadOptions* options, AcdfError* error);
@@ -74,7 +77,7 @@ int acdf_brdf(const AcdfFile* file, struct AcdfBrdf* out);
 int acdf_table(const AcdfFile* file, struct AcdfTable* out);
 
 /* The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how many
- * there are (acdf/moved.h). */
+ * there are (acdf/moved.h); 0 of a file of curves, whose views cannot be moved. */
 int acdf_memory(const AcdfFile* file, struct AcdfMove* moves);
 
 /* What a file says of itself, and its parts as they lie in it: valid until it is closed. `file` is not null. */
@@ -87,8 +90,6 @@ const AcdfAxis* acdf_axis(const AcdfFile* file, uint32_t axis); /* null where ax
 const AcdfBin* acdf_bin(const AcdfFile* file, uint32_t bin);    /* null where bin >= bin_count */
 /* What the file is to be combined with; null: it is to be used alone. */
 const AcdfPartner* acdf_partner(const AcdfFile* file);
-/* Chunk TREE, and its size in units of two bytes, in which offsets in it are counted; null: halvings. */
-const uint8_t* acdf_tree(const AcdfFile* file, uint32_t* units);
 
 /* UTF-8, not terminated; `data` is null where there is none. */
 typedef struct AcdfText {

@@ -31,10 +31,9 @@ ACDF_FN double acdf_grid_solid_angle(const AcdfGrid* grid, const AcdfRange range
            acdf_grid_height(grid, &range[1]);
 }
 
-/* Pdf per steradian in a cell of probability p, at fractions t[axis] of it in the measures of the axes. */
-ACDF_FN float acdf_grid_pdf(const AcdfGrid* grid, const AcdfRange range[2], const double t[2], double p) {
-    return acdf_cell_pdf(p, range[0].high - range[0].low, grid->columns, acdf_grid_height(grid, &range[1]),
-                         acdf_tilt_pdf(range[0].tilt, t[0]) * acdf_tilt_pdf(range[1].tilt, t[1]));
+/* Pdf per steradian in a cell of probability p. */
+ACDF_FN float acdf_grid_pdf(const AcdfGrid* grid, const AcdfRange range[2], double p) {
+    return acdf_cell_pdf(p, range[0].high - range[0].low, grid->columns, acdf_grid_height(grid, &range[1]));
 }
 
 /* A position on one axis of the square, at fraction t of a range, ACDF_BORDER inside it. */
@@ -48,13 +47,12 @@ ACDF_FN double acdf_octahedral_position_on(const AcdfRange* range, double t, uin
 ACDF_FN AcdfDirectionSample acdf_octahedral_position(const AcdfGrid* grid, const AcdfRange range[2],
                                                      const double u[2], double p) {
     AcdfDirectionSample out;
-    double t[2], d[3];
+    double d[3];
     int i;
-    for (i = 0; i < 2; ++i) t[i] = acdf_tilt_sample(range[i].tilt, u[i]);
-    acdf_octahedral_direction(acdf_octahedral_position_on(&range[0], t[0], grid->columns),
-                              acdf_octahedral_position_on(&range[1], t[1], grid->rows), d);
+    acdf_octahedral_direction(acdf_octahedral_position_on(&range[0], u[0], grid->columns),
+                              acdf_octahedral_position_on(&range[1], u[1], grid->rows), d);
     for (i = 0; i < 3; ++i) out.direction[i] = (float)d[i];
-    out.pdf = acdf_grid_pdf(grid, range, t, p);
+    out.pdf = acdf_grid_pdf(grid, range, p);
     return out;
 }
 /* The same of either grid. */

@@ -48,16 +48,8 @@ typedef struct AcdfLocalPoint {
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalPoint) <= 120); /* renderers keep many */
 
 ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {
-    if (local->subdivisions > 0) return acdf_octahedral_bins(local->subdivisions, normal, out);
-    return acdf_latlong_bins(local->columns, local->rows, normal, out);
-}
-
-/* The bin of the largest weight. */
-ACDF_FN uint32_t acdf_nearest_bin(const AcdfNormalBins* bins) {
-    int i, nearest = 0;
-    for (i = 1; i < bins->count; ++i)
-        if (bins->weight[i] > bins->weight[nearest]) nearest = i;
-    return bins->bin[nearest];
+    ACDF_RETURN_CURVES(&local->environment, local_bins(local, normal, out));
+    return acdf_octahedral_bins(local->subdivisions, normal, out);
 }
 
 /* Begins a point: nothing serves it. */
@@ -79,18 +71,7 @@ ACDF_INLINE double acdf_local_length(const AcdfLocal* local, const float normal[
     return (double)local->subdivisions / (fabs(x) + fabs(y) + fabs(z)) * sqrt(x * x + y * y + z * z);
 }
 
-/* acdf_local_at of trees of curves: that of the nearest bin. */
-ACDF_INLINE void acdf_local_tree_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
-    AcdfNormalBins bins;
-    const AcdfBin* bin;
-    acdf_local_nothing(normal, out);
-    if (!acdf_local_bins(local, out->surface, &bins)) return;
-    bin = &local->bins[acdf_nearest_bin(&bins)];
-    if (bin->root == ACDF_NO_ROOT) acdf_local_by_tree(local->environment.root, out);
-    else if (bin->share > 0.0f) acdf_local_by_tree(bin->root, out);
-}
-
-/* acdf_local_at of one tree of halvings: bins are corners of an octahedron. */
+/* acdf_local_at of halvings: bins are corners of an octahedron. */
 ACDF_INLINE void acdf_local_rows_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     AcdfNormalBins bins;
     double weight[ACDF_NORMALS_MIXED];
@@ -116,8 +97,8 @@ ACDF_INLINE void acdf_local_rows_at(const AcdfLocal* local, const float normal[3
 
 /* Finds what serves a normal. */
 ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
-    if (local->rows_of_normals) acdf_local_rows_at(local, normal, out);
-    else acdf_local_tree_at(local, normal, out);
+    ACDF_RETURN_CURVES(&local->environment, local_at(local, normal, out));
+    acdf_local_rows_at(local, normal, out);
 }
 
 /* ---- pdfs -------------------------------------------------------------------------------------------------- */
@@ -142,11 +123,11 @@ ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint
         acdf_halved_ranges(box, range);
         return p;
     }
-    if (env->halved) {
-        AcdfSpan steps[2];
-        return acdf_environment_halved_cell(env, square, steps, range);
+    {
+        const AcdfEnvironment tree = acdf_local_tree(local, point);
+        AcdfStratum strata[2];
+        return acdf_environment_find_square(&tree, square, range, strata);
     }
-    return acdf_tree_find(env->tree, point->by.root, square, range, 0);
 }
 
 /* The pdf of what rows of halvings sample in a direction that lies at a spot. */
@@ -201,15 +182,20 @@ ACDF_OUTLINE_ON_CPU float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLo
 /* Pdf per steradian with which acdf_local_sample samples `direction` (unit) for that normal. Rows are mixed while
  * the direction is on its way, which does not depend on the normal. */
 ACDF_OUTLINE_ON_CPU float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    AcdfRowSpot spot;
     AcdfLocalPoint point;
-    if (local->rows_of_normals) {
-        const AcdfGrid grid = acdf_environment_grid(&local->environment);
-        const AcdfRowSpot spot = acdf_rows_spot(local->rows_of_normals, &grid, direction);
-        acdf_local_rows_at(local, normal, &point);
-        if (point.what == ACDF_LOCAL_ROWS)
-            return acdf_local_combined_pdf(local, &point, direction,
-                                           acdf_local_rows_pdf(local, &point, &grid, &spot, direction));
-    } else acdf_local_tree_at(local, normal, &point);
+#ifndef ACDF_ON_GPU
+    if (!local->rows_of_normals) {
+        local->environment.curves->local_at(local, normal, &point);
+        return acdf_local_pdf_at(local, &point, direction);
+    }
+#endif
+    spot = acdf_rows_spot(local->rows_of_normals, &grid, direction);
+    acdf_local_rows_at(local, normal, &point);
+    if (point.what == ACDF_LOCAL_ROWS)
+        return acdf_local_combined_pdf(local, &point, direction,
+                                       acdf_local_rows_pdf(local, &point, &grid, &spot, direction));
     return acdf_local_pdf_at(local, &point, direction);
 }
 
@@ -286,6 +272,7 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_sample(const AcdfLocal* local
 ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[3]) {
     AcdfNormalBins bins;
     AcdfLocalPoint point;
+    ACDF_RETURN_CURVES(&local->environment, local_irradiance(local, normal));
     acdf_local_at(local, normal, &point);
     if (point.what == ACDF_LOCAL_ROWS && acdf_partner_records(local->partner) &&
         acdf_local_bins(local, normal, &bins)) { /* shares hold the light that is left to the file */
@@ -297,10 +284,7 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
     }
     if (point.what == ACDF_LOCAL_ROWS)
         return acdf_clamp(local->environment.total * point.sum / point.length, 0.0, 0x1.fffffffffffffp1023);
-    if (point.what == ACDF_LOCAL_NOTHING || !acdf_local_bins(local, normal, &bins)) return 0.0;
-    if (local->rows_of_normals || point.by.root == local->environment.root) return local->environment.total;
-    return acdf_clamp(local->environment.total * (double)local->bins[acdf_nearest_bin(&bins)].share, 0.0,
-                      0x1.fffffffffffffp1023); /* a file may have a total and a share whose product is too large */
+    return point.what == ACDF_LOCAL_NOTHING ? 0.0 : local->environment.total;
 }
 
 /* Which share of the samples to take from the file at a normal, in (0, 1]; interpolated between bins. */
@@ -321,7 +305,7 @@ ACDF_FN int acdf_local_stored(const AcdfLocal* local, const float normal[3]) {
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
     return point.what == ACDF_LOCAL_ROWS ||
-           (point.what == ACDF_LOCAL_TREE && !local->rows_of_normals && point.by.root != local->environment.root);
+           (point.what == ACDF_LOCAL_TREE && point.by.root != local->environment.root);
 }
 
 #ifdef __cplusplus

@@ -69,21 +69,6 @@ ACDF_FN int acdf_octahedral_bins(uint32_t n, const float normal[3], AcdfNormalBi
     return out->count > 0;
 }
 
-/* The cell of a lat-long grid of normals: columns in phi, rows in theta, as those of a probe. */
-ACDF_FN int acdf_latlong_bins(uint32_t columns, uint32_t rows, const float normal[3], AcdfNormalBins* out) {
-    const double x = normal[0], y = normal[1], z = normal[2];
-    uint32_t column, row;
-    if (!acdf_are_finite(normal) || !(fabs(x) + fabs(y) + fabs(z) > 0.0)) return 0;
-    column = (uint32_t)((double)columns * (0.5 - 0.5 * acdf_atan2pi(y, x)));
-    row = (uint32_t)((double)rows * acdf_atan2pi(sqrt(x * x + y * y), z));
-    if (column >= columns) column = 0;
-    if (row >= rows) row = rows - 1;
-    out->count = 1;
-    out->bin[0] = row * columns + column;
-    out->weight[0] = 1.0;
-    return 1;
-}
-
 #ifdef __cplusplus
 }
 #endif

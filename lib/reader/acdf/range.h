@@ -8,10 +8,9 @@
 extern "C" {
 #endif
 
-/* The part of one axis that a cell covers, and the slope of the pdf across it. */
+/* The part of one axis that a cell covers. */
 typedef struct AcdfRange {
     uint32_t low, high; /* positions on the axis, low < high */
-    double tilt;        /* s: the pdf varies as 1 + s (2t - 1) for t in [0, 1] across the range */
 } AcdfRange;
 
 /* The random numbers of one axis that lead into a cell: u_low + u_width * [0, 1]. */
@@ -19,17 +18,12 @@ typedef struct AcdfStratum {
     double low, width;
 } AcdfStratum;
 
-/* Where in [0, 1] a tilted pdf puts u: solves t + s (t^2 - t) = u without cancellation. */
-ACDF_FN double acdf_tilt_sample(double tilt, double u) {
-    const double a = 1.0 - tilt;
-    return tilt == 0.0 ? u : 2.0 * u / (a + sqrt(a * a + 4.0 * tilt * u));
-}
-ACDF_FN double acdf_tilt_cdf(double tilt, double t) { return t + tilt * (t * t - t); }
-ACDF_FN double acdf_tilt_pdf(double tilt, double t) { return 1.0 + tilt * (2.0 * t - 1.0); }
+/* A product of many probabilities may underflow; what can be sampled keeps a positive one. */
+ACDF_FN double acdf_positive(double probability) { return probability > 0x1p-1000 ? probability : 0x1p-1000; }
 
 /* The random number in [0, 1] that a cell's stratum has at t of the cell: never more than 1 by rounding. */
-ACDF_FN double acdf_stratum_number(const AcdfStratum* stratum, const AcdfRange* range, double t) {
-    const double u = stratum->low + stratum->width * acdf_tilt_cdf(range->tilt, t);
+ACDF_FN double acdf_stratum_number(const AcdfStratum* stratum, double t) {
+    const double u = stratum->low + stratum->width * t;
     return u < 1.0 ? u : 1.0;
 }
 

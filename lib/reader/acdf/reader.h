@@ -55,6 +55,9 @@ struct LoadOptions {
     /// file is gone. What is needed for a moment, while bytes are checked, is the C library's, but for the nodes of
     /// a tree of halvings.
     AcdfAllocator allocator = {};
+    /// What reads files of the fits `cdf`, `pdf` and `uniform`: acdf_curves() of acdf/curves/curves.h. Null: such
+    /// files are refused as `unsupported`.
+    const AcdfCurves* curves = nullptr;
 };
 
 /// A key or value of the metadata: UTF-8, not terminated.
@@ -85,8 +88,7 @@ public:
     }
     /// Checks `size` bytes at `data`. They are used in place, and must outlive `file`, unless they are not
     /// aligned to 8 bytes (then copied). Compressed chunks are inflated into memory of the file's own.
-    static Status from_memory(const void* data, size_t size, File& file,
-                              const LoadOptions& options = {}) noexcept {
+    static Status from_memory(const void* data, size_t size, File& file, const LoadOptions& options = {}) noexcept {
         Status status;
         const AcdfLoadOptions given = of(options);
         file = File(acdf_from_memory_with(data, size, &given, &status));
@@ -105,13 +107,6 @@ public:
     const AcdfAxis& axis(uint32_t i) const noexcept { return *acdf_axis(opened_, i); }
     const AcdfBin& bin(uint32_t i) const noexcept { return *acdf_bin(opened_, i); }
     bool has_bins() const noexcept { return acdf_bin(opened_, 0) != nullptr; }
-    /// Chunk TREE, and its size in units of two bytes, in which offsets in it are counted.
-    const uint8_t* tree() const noexcept { return acdf_tree(opened_, nullptr); }
-    uint32_t tree_units() const noexcept {
-        uint32_t units = 0;
-        acdf_tree(opened_, &units);
-        return units;
-    }
     uint64_t size() const noexcept { return acdf_size(opened_); }
     /// What the file is to be combined with; null: it is to be used alone.
     const AcdfPartner* partner() const noexcept { return acdf_partner(opened_); }
@@ -137,13 +132,13 @@ public:
     /// The view of a table file: only where kind() == ACDF_KIND_TABLE.
     TableView table() const noexcept;
     /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
-    /// many there are (acdf/moved.h).
+    /// many there are (acdf/moved.h); 0 of a file of curves, whose views cannot be moved.
     int memory(AcdfMove* moves) const noexcept { return acdf_memory(opened_, moves); }
 
 private:
     explicit File(AcdfFile* opened) noexcept : opened_(opened) {}
     static AcdfLoadOptions of(const LoadOptions& options) noexcept {
-        return {options.limits.max_file_bytes, options.limits.max_inflated_bytes, !options.tables,
+        return {options.limits.max_file_bytes, options.limits.max_inflated_bytes, !options.tables, options.curves,
                 options.allocator};
     }
     AcdfFile* opened_ = nullptr;

@@ -1,5 +1,5 @@
 /* Sampling and evaluating .acdf environments: freestanding headers, valid C99, C++17 and CUDA/HIP/SYCL.
- * acdf/tree.h has the trees, acdf/grid.h the sphere, acdf/random.h random numbers, acdf/elementary.h the rest.
+ * acdf/halvings.h has the trees, acdf/grid.h the sphere, acdf/random.h random numbers, acdf/elementary.h the rest.
  *
  * It works on plain views into the bytes of a *checked* file (acdf/reader.h checks once, at load; nothing
  * is checked here). Functions are pure: no allocation, no globals, no errors. To call them in a GPU kernel
@@ -13,29 +13,27 @@
 #ifndef ACDF_SAMPLE_H
 #define ACDF_SAMPLE_H
 
-#include <acdf/grid.h>
+#include <acdf/curves_interface.h>
 #include <acdf/halvings.h>
 #include <acdf/partner.h>
 #include <acdf/random.h>
-#ifndef ACDF_ENVIRONMENT_ONLY
-#include <acdf/tree.h>
 #include <acdf/widen.h>
-#endif
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* A pdf over the sphere in a checked file: a tree of halvings, or one of curves. */
+/* A pdf over the sphere in a checked file: a tree of halvings, or what `curves` samples. */
 typedef struct AcdfEnvironment {
-    const uint8_t* tree; /* chunk TREE: curves, of the fits `uniform`, `cdf` and `pdf`; null: halvings */
-    uint32_t root;
     uint32_t columns;             /* axis 0: position 0 is phi = +pi, `columns` is phi = -pi; or u from 0 to 1 */
     uint32_t rows;                /* axis 1: position 0 is theta = 0 (+z), `rows` is theta = pi; or v from 0 to 1 */
     double total;                 /* integral of the target over the sphere */
     uint32_t parameterization;    /* ACDF_PARAM_OCTAHEDRAL: u and v of the square; all else: phi and theta */
     const AcdfHalvedTree* halved; /* null: curves */
     const AcdfPartner* partner;   /* null: to be used alone */
+    const AcdfCurves* curves;     /* null: halvings; else */
+    const uint8_t* tree;          /* chunk TREE, */
+    uint32_t root;                /* and the curve in it that divides the sphere */
 } AcdfEnvironment;
 
 /* The grid that positions lie on. */
@@ -49,13 +47,12 @@ ACDF_FN AcdfGrid acdf_environment_grid(const AcdfEnvironment* env) {
 
 /* ---- trees of halvings ------------------------------------------------------------------------------- */
 
-/* The box of a leaf, without tilts. */
+/* The box of a leaf. */
 ACDF_INLINE void acdf_halved_ranges(const AcdfSpan box[2], AcdfRange range[2]) {
     int axis;
     for (axis = 0; axis < 2; ++axis) {
         range[axis].low = box[axis].end[0];
         range[axis].high = box[axis].end[1];
-        range[axis].tilt = 0.0;
     }
 }
 
@@ -107,7 +104,7 @@ ACDF_INLINE float acdf_halved_pdf(const AcdfEnvironment* env, const AcdfRange ra
     if (env->parameterization == ACDF_PARAM_OCTAHEDRAL)
         height = 2.0 * (double)(range[1].high - range[1].low) / (double)env->rows;
     else height = acdf_halved_height(env->halved, range[1].low) - acdf_halved_height(env->halved, range[1].high);
-    return acdf_cell_pdf(p, range[0].high - range[0].low, env->columns, height, 1.0);
+    return acdf_cell_pdf(p, range[0].high - range[0].low, env->columns, height);
 }
 
 /* acdf_environment_pdf by halvings, in doubles: right at the borders of cells, too. */
@@ -166,49 +163,14 @@ ACDF_INLINE double acdf_environment_halved_find(const AcdfEnvironment* env, cons
     return p;
 }
 
-#ifndef ACDF_ENVIRONMENT_ONLY
-/* ---- trees of curves --------------------------------------------------------------------------------- */
-
-/* acdf_environment_sample by curves. */
-ACDF_OUTLINE AcdfDirectionSample acdf_environment_curves_sample(const AcdfEnvironment* env, double u0, double u1) {
-    const AcdfGrid grid = acdf_environment_grid(env);
-    double u[2], p;
-    AcdfRange range[2];
-    u[0] = acdf_unit_interval(u0);
-    u[1] = acdf_unit_interval(u1);
-    acdf_sphere_ranges(env->columns, env->rows, range);
-    p = acdf_tree_sample(env->tree, env->root, u, range);
-    return acdf_grid_position(&grid, range, u, p);
-}
-
-/* acdf_environment_halved_find by curves. */
-ACDF_FN double acdf_environment_curves_find(const AcdfEnvironment* env, const uint32_t square[2],
-                                            AcdfRange range[2], AcdfStratum strata[2]) {
-    int axis;
-    acdf_sphere_ranges(env->columns, env->rows, range);
-    for (axis = 0; axis < 2; ++axis) {
-        strata[axis].low = 0.0;
-        strata[axis].width = 1.0;
-    }
-    return acdf_tree_find(env->tree, env->root, square, range, strata);
-}
-
-/* acdf_environment_pdf by curves. */
-ACDF_OUTLINE float acdf_environment_curves_pdf(const AcdfEnvironment* env, const float direction[3]) {
-    const AcdfGrid grid = acdf_environment_grid(env);
-    AcdfRange range[2];
-    AcdfStratum strata[2];
-    double t[2], position[2], p;
-    uint32_t square[2];
-    if (!acdf_grid_square(&grid, direction, square, position)) return 0.0f;
-    p = acdf_environment_curves_find(env, square, range, strata);
-    if (!(p > 0.0)) return 0.0f;
-    acdf_grid_fractions(&grid, direction, position, range, t);
-    return acdf_grid_pdf(&grid, range, t, p);
-}
-#endif
-
 /* ---- any ---------------------------------------------------------------------------------------------- */
+
+/* acdf_environment_halved_find of any tree. */
+ACDF_INLINE double acdf_environment_find_square(const AcdfEnvironment* env, const uint32_t square[2],
+                                                AcdfRange range[2], AcdfStratum strata[2]) {
+    ACDF_RETURN_CURVES(env, find(env, square, range, strata));
+    return acdf_environment_halved_find(env, square, range, strata);
+}
 
 /* Where a direction falls: its cell, the random numbers that lead there, and the fractions t[axis] across the cell
  * in the measures of the axes. Returns the cell's probability; 0 for directions that are NaN or whose length
@@ -219,11 +181,7 @@ ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float dir
     double position[2], p;
     uint32_t square[2];
     if (!acdf_grid_square(&grid, direction, square, position)) return 0.0;
-#ifndef ACDF_ENVIRONMENT_ONLY
-    if (!env->halved) p = acdf_environment_curves_find(env, square, range, strata);
-    else
-#endif
-        p = acdf_environment_halved_find(env, square, range, strata);
+    p = acdf_environment_find_square(env, square, range, strata);
     acdf_grid_fractions(&grid, direction, position, range, t);
     return p;
 }
@@ -231,18 +189,14 @@ ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float dir
 /* Samples a direction. u0 (phi or u) and u1 (theta or v) in [0, 1]; values outside are clamped, NaN counts as 0.
  * Monotone in each of them within a cell: strata of random numbers stay strata of directions. */
 ACDF_INLINE AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, double u0, double u1) {
-#ifndef ACDF_ENVIRONMENT_ONLY
-    if (!env->halved) return acdf_environment_curves_sample(env, u0, u1);
-#endif
+    ACDF_RETURN_CURVES(env, sample(env, u0, u1));
     return acdf_environment_halved_sample(env, u0, u1);
 }
 
 /* The pdf, in sr^-1, with which acdf_environment_sample returns `direction` (unit): exactly the sample's. 0 where
  * no sample falls, and for directions that are NaN or not of unit length. */
 ACDF_INLINE float acdf_environment_pdf(const AcdfEnvironment* env, const float direction[3]) {
-#ifndef ACDF_ENVIRONMENT_ONLY
-    if (!env->halved) return acdf_environment_curves_pdf(env, direction);
-#endif
+    ACDF_RETURN_CURVES(env, pdf(env, direction));
     return acdf_environment_halved_pdf(env, direction);
 }
 
@@ -253,8 +207,9 @@ ACDF_FN int acdf_environment_invert(const AcdfEnvironment* env, const float dire
     AcdfStratum strata[2];
     double t[2];
     int axis;
+    ACDF_RETURN_CURVES(env, invert(env, direction, u));
     if (!(acdf_environment_find(env, direction, range, t, strata) > 0.0)) return 0;
-    for (axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t[axis]);
+    for (axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], t[axis]);
     return 1;
 }
 

@@ -43,16 +43,15 @@ ACDF_FN double acdf_row_z(uint32_t row, uint32_t rows) {
     return (1.0 - 2.0 * (double)south) * (1.0 - 2.0 * s * s);
 }
 
-/* Pdf per steradian of a cell of probability p whose solid angle is `area` over `columns`; `shape` is the
- * product of its tilt pdfs. */
-ACDF_FN float acdf_area_pdf(double p, uint32_t columns, double area, double shape) {
-    const double pdf = p * (double)columns / area * shape;
+/* Pdf per steradian of a cell of probability p whose solid angle is `area` over `columns`. */
+ACDF_FN float acdf_area_pdf(double p, uint32_t columns, double area) {
+    const double pdf = p * (double)columns / area;
     if (pdf >= 3.402823466e38) return 3.402823466e38f;
     return pdf > 1.17549435e-38 ? (float)pdf : 1.17549435e-38f;
 }
 /* The same over `width` columns and a difference dz of cosines. */
-ACDF_FN float acdf_cell_pdf(double p, uint32_t width, uint32_t columns, double dz, double shape) {
-    return acdf_area_pdf(p, columns, 2.0 * ACDF_PI * (double)width * dz, shape);
+ACDF_FN float acdf_cell_pdf(double p, uint32_t width, uint32_t columns, double dz) {
+    return acdf_area_pdf(p, columns, 2.0 * ACDF_PI * (double)width * dz);
 }
 
 /* The whole sphere, before a tree narrows it. */
@@ -60,7 +59,6 @@ ACDF_FN void acdf_sphere_ranges(uint32_t columns, uint32_t rows, AcdfRange range
     range[0].low = range[1].low = 0;
     range[0].high = columns;
     range[1].high = rows;
-    range[0].tilt = range[1].tilt = 0.0;
 }
 
 /* The direction that what is left of the random numbers picks in a cell of probability p, between the heights z0 of
@@ -68,14 +66,12 @@ ACDF_FN void acdf_sphere_ranges(uint32_t columns, uint32_t rows, AcdfRange range
 ACDF_FN AcdfDirectionSample acdf_sphere_position_between(uint32_t columns, const AcdfRange range[2],
                                                          const double u[2], double p, double z0, double z1) {
     AcdfDirectionSample out;
-    double tx, tz, x, z, sin_theta, sine, cosine, border, kept;
-    tx = acdf_tilt_sample(range[0].tilt, u[0]);
+    double x, z, sin_theta, sine, cosine, border, kept;
     border = (double)columns * (ACDF_BORDER / (2.0 * ACDF_PI));
-    x = (double)range[0].low + tx * (double)(range[0].high - range[0].low);
+    x = (double)range[0].low + u[0] * (double)(range[0].high - range[0].low);
     x = acdf_clamp(x, (double)range[0].low + border, (double)range[0].high - border);
 
-    tz = acdf_tilt_sample(range[1].tilt, u[1]);
-    z = z0 + tz * (z1 - z0);
+    z = z0 + u[1] * (z1 - z0);
     sin_theta = sqrt((1.0 - z) * (1.0 + z));
     border = ACDF_BORDER * sin_theta;
     kept = acdf_clamp(z, z1 + border, z0 - border);
@@ -89,8 +85,7 @@ ACDF_FN AcdfDirectionSample acdf_sphere_position_between(uint32_t columns, const
     out.direction[0] = (float)(sin_theta * cosine);
     out.direction[1] = (float)(sin_theta * sine);
     out.direction[2] = (float)z;
-    out.pdf = acdf_cell_pdf(p, range[0].high - range[0].low, columns, z0 - z1,
-                            acdf_tilt_pdf(range[0].tilt, tx) * acdf_tilt_pdf(range[1].tilt, tz));
+    out.pdf = acdf_cell_pdf(p, range[0].high - range[0].low, columns, z0 - z1);
     return out;
 }
 

@@ -10,33 +10,32 @@ namespace acdf {
 
 namespace {
 
-constexpr u32 max_columns = 1u << 16, max_rows = 1u << 28, max_views = 1u << 16;
+constexpr u32 max_columns = 1u << 16, max_views = 1u << 16;
 
 constexpr WantedAxis wanted[] = {
     // SPEC.md §11
     {"phi_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, -ACDF_PI, ACDF_PI, max_columns},
-    {"cos_theta_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, 1.0, 0.0, max_rows},
+    {"cos_theta_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_HALF, 1.0, 0.0, ACDF_HALF_ROWS},
     {"theta_o", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 0.0, 0.5 * ACDF_PI, max_views},
     {"phi_o", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, -ACDF_PI, ACDF_PI, max_views},
 };
 
-const char* brdf_axis_fault(const AcdfAxis& axis, u32 i, bool halved) {
-    WantedAxis own = wanted[i];
+const char* brdf_axis_fault(const AcdfAxis& axis, u32 i, const WantedAxis& rows) {
+    WantedAxis own = i == 1 ? rows : wanted[i];
     if (i == 0 && axis.low == 0.0) own.low = 0.0; // mirrored
-    const bool rows = halved && i == 1;           // of half-vectors
-    if (rows) own.measure = ACDF_MEASURE_HALF;
     const char* fault = axis_fault(axis, own);
-    return !fault && rows && axis.resolution != ACDF_HALF_ROWS ? "resolution" : fault;
+    const bool other = own.measure == ACDF_MEASURE_HALF && axis.resolution != ACDF_HALF_ROWS;
+    return !fault && other ? "resolution" : fault;
 }
 
-void check_brdf_axes(const Payload& payload, bool halved, Report& report, const Parts& parts) {
+void check_brdf_axes(const Payload& payload, const WantedAxis& rows, Report& report, const Parts& parts) {
     const AcdfDescription& d = *parts.description;
     if (d.axis_count != 4) {
         report.add(8001, payload.at(offsetof(AcdfDescription, axis_count)), "a BRDF with %u axes", d.axis_count);
         return;
     }
     for (u32 i = 0; i < 4; ++i)
-        if (const char* fault = brdf_axis_fault(parts.axes[i], i, halved))
+        if (const char* fault = brdf_axis_fault(parts.axes[i], i, rows))
             report.add(8001, payload.at(sizeof d + i * sizeof(AcdfAxis)),
                        "axis %u is not that of a BRDF: the %s differs", i, fault);
     check_bin_count(payload, 8002, u64{parts.axes[2].resolution} * parts.axes[3].resolution, report, parts);
@@ -74,10 +73,10 @@ void check_nodes(const Payload& payload, Report& report, const Parts& parts) {
 
 } // namespace
 
-void check_brdf_kind(const Payloads& payloads, Report& report, Parts& parts) noexcept {
+void check_brdf_kind(const Payloads& payloads, const WantedAxis& rows, Report& report, Parts& parts) noexcept {
     const Payload &description = payloads.of[chunk_description], &views = payloads.of[chunk_views];
     if (parts.description->parameterization != ACDF_PARAM_HALF_ANGLE) return; // rule 5016: what axes mean is open
-    check_brdf_axes(description, payloads.of[chunk_halvings].data != nullptr, report, parts);
+    check_brdf_axes(description, rows, report, parts);
     if (!views.data) {
         report.add(8003, description.at(0), "VIEW is missing");
         return;
@@ -96,7 +95,7 @@ void check_brdf_kind(const Payloads& payloads, Report& report, Parts& parts) noe
 
 void check_halved_brdf(const Payloads& payloads, Report& report, Parts& parts) noexcept {
     check_rows(payloads, report, parts);
-    if (!report.stopped()) check_brdf_kind(payloads, report, parts);
+    if (!report.stopped()) check_brdf_kind(payloads, wanted[1], report, parts);
 }
 
 } // namespace acdf

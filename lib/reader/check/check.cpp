@@ -154,11 +154,7 @@ void check_type_and_flags(const ChunkTable& table, u32 i, u32 kind, Report& repo
             report.add(3003, at, "chunks %u and %u are both '%s'", j, i, name.text);
             break;
         }
-#ifdef ACDF_ENVIRONMENT_ONLY
-    const u32 last_codec = ACDF_CODEC_ZLIB;
-#else
     const u32 last_codec = chunk.type == ACDF_CHUNK_TREE ? ACDF_CODEC_PLANES : ACDF_CODEC_ZLIB;
-#endif
     if (chunk.codec > last_codec)
         report.add(3005, at + offsetof(AcdfChunk, codec), "codec %u of '%s' is unknown", chunk.codec, name.text);
     if ((chunk.flags & ~ACDF_CHUNK_FLAG_CRITICAL) != 0)
@@ -266,17 +262,17 @@ void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
 }
 
 // Another chunk that a tree of halvings does without; null: there is none.
-const char* beside_halvings(const Payloads& payloads, u32 kind) {
+const char* beside_halvings(const ChunkTable& table, u32 kind) {
     const bool has_bins = kind != ACDF_KIND_ENVIRONMENT && kind != ACDF_KIND_INDEXED;
-    if (payloads.of[chunk_tree].data) return "TREE";
-    return payloads.of[chunk_bins].data && !has_bins ? "BINS" : nullptr;
+    if (has_chunk(table, ACDF_CHUNK_TREE)) return "TREE";
+    return has_chunk(table, ACDF_CHUNK_BINS) && !has_bins ? "BINS" : nullptr;
 }
 
 // What is sampled by halvings: an environment or several, rows of normals or views, or bins of a table.
-void check_halved(const Payloads& payloads, [[maybe_unused]] u32 kind, const AcdfAllocator& allocator,
+void check_halved(const ChunkTable& table, const Payloads& payloads, u32 kind, const AcdfAllocator& allocator,
                   Report& report, Parts& parts) {
     const Payload& halvings = payloads.of[chunk_halvings];
-    if (const char* other = kind == ACDF_KIND_TABLE ? nullptr : beside_halvings(payloads, kind)) // else rule 3013
+    if (const char* other = kind == ACDF_KIND_TABLE ? nullptr : beside_halvings(table, kind)) // else rule 3013
         report.add(6035, halvings.at(0), "%s is there beside HALV", other);
     if (parts.description->fit != ACDF_FIT_VARIANCE)
         report.add(6035, halvings.at(0), "HALV with fit %u", parts.description->fit);
@@ -298,14 +294,29 @@ void check_halved(const Payloads& payloads, [[maybe_unused]] u32 kind, const Acd
     check_environment(payloads.of[chunk_description], payloads.of[chunk_bins], report, parts);
 }
 
+// What has curves: a library beside the reader checks it.
+void check_curves(const ChunkTable& table, u32 kind, const AcdfCurves* curves, Report& report, Parts& parts) {
+    constexpr const char* fits[] = {"uniform", "cdf", "pdf", "variance"};
+    const Payload& description = parts.payloads.of[chunk_description];
+    const u32 fit = parts.description->fit - 1; // of another one: rule 5002
+    const AcdfUncheckedFile file = {parts.payloads, kind, report, parts};
+    if (curves) curves->check(&file);
+    else if (has_chunk(table, ACDF_CHUNK_TREE) && fit < 4)
+        report.add(
+            5002, description.at(offsetof(AcdfDescription, fit)),
+            "fit `%s` has curves, and the reader was opened without: pass acdf_curves() of acdf::curves, or make "
+            "the file with `--fit variance`",
+            fits[fit]);
+}
+
 } // namespace
 
 Parts::~Parts() { give_block(allocator, halvings_block); }
 
-Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink, void* context, Parts& parts,
-              const AcdfAllocator& allocator) noexcept {
+Verdict check(const u8* bytes, u64 size, const LoadOptions& options, FindingSink sink, void* context,
+              Parts& parts) noexcept {
     Report report(sink, context);
-    parts.allocator = allocator;
+    parts.allocator = options.allocator;
     if (!check_header(bytes, size, report) || report.stopped()) return report.verdict();
     const AcdfHeader& header = *reinterpret_cast<const AcdfHeader*>(bytes);
     ChunkTable table = {};
@@ -315,20 +326,16 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
     if (table.legal && !report.stopped()) check_padding(table, bytes, size, report);
     if (!report.stopped()) check_crcs(table, bytes, report);
     Payloads& payloads = parts.payloads;
-    if (!report.stopped()) read_payloads(table, bytes, limits, allocator, report, parts, payloads);
+    if (!report.stopped()) read_payloads(table, bytes, options, report, parts, payloads);
     const Payload& description = payloads.of[chunk_description];
     if (description.data && !report.stopped()) check_description(description, header.kind, report, parts);
     if (payloads.of[chunk_metadata].data && !report.stopped())
         check_metadata(payloads.of[chunk_metadata], report, parts);
     if (!parts.description || report.stopped()) return report.verdict();
     if (payloads.of[chunk_halvings].data && belongs(chunk_halvings, header.kind))
-        check_halved(payloads, header.kind, allocator, report, parts);
-#ifdef ACDF_ENVIRONMENT_ONLY
-    else report.add(5002, description.at(offsetof(AcdfDescription, fit)));
-#else
+        check_halved(table, payloads, header.kind, options.allocator, report, parts);
     else if (header.kind != ACDF_KIND_INDEXED && header.kind != ACDF_KIND_TABLE) // else rule 3004
-        check_kind(payloads, header.kind, report, parts);
-#endif
+        check_curves(table, header.kind, options.curves, report, parts);
     if (payloads.of[chunk_partner].data && belongs(chunk_partner, header.kind) && !report.stopped())
         check_partner(payloads.of[chunk_partner], header.kind, report, parts);
     return report.verdict();

@@ -32,11 +32,11 @@ struct Verdict {
 /// Reports every finding that the checks can go on to, in the order of the rules' ranges. Any bytes, at any
 /// alignment; reads nothing outside them; linear in the size and in what the compressed chunks inflate to.
 Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* context,
-                 const Limits& limits = {}) noexcept;
+                 const LoadOptions& options = {}) noexcept;
 
 /// The same with any callable `sink(const Finding&)` that returns void, or bool (false: stop).
 template <class Sink>
-Verdict validate(const void* bytes, std::size_t size, Sink&& sink, const Limits& limits = {}) {
+Verdict validate(const void* bytes, std::size_t size, Sink&& sink, const LoadOptions& options = {}) {
     using Target = std::remove_reference_t<Sink>;
     return validate(
         bytes, size,
@@ -45,7 +45,7 @@ Verdict validate(const void* bytes, std::size_t size, Sink&& sink, const Limits&
             if constexpr (std::is_same_v<decltype(target(finding)), void>) return target(finding), true;
             else return target(finding);
         },
-        const_cast<void*>(static_cast<const void*>(&sink)), limits);
+        const_cast<void*>(static_cast<const void*>(&sink)), options);
 }
 #endif
 
@@ -96,10 +96,8 @@ struct Parts {
 
     Payloads payloads;
     const AcdfDescription* description = nullptr;
-    const AcdfAxis* axes = nullptr; ///< description->axis_count
-    const AcdfBin* bins = nullptr;  ///< description->bin_count
-    const u8* tree = nullptr;
-    u32 tree_units = 0;                   ///< bins and tree: of curves alone
+    const AcdfAxis* axes = nullptr;       ///< description->axis_count
+    const AcdfBin* bins = nullptr;        ///< description->bin_count
     const AcdfPartner* partner = nullptr; ///< null where the file is to be used alone
     const u8* metadata = nullptr;         ///< the payload of META after its count; null where absent
     u32 metadata_count = 0;
@@ -120,7 +118,7 @@ struct Parts {
 };
 
 /// The checks themselves, on bytes aligned to 8. `parts` is complete where the verdict has no errors.
-ACDF_ONCE Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink, void* context,
-                        Parts& parts, const AcdfAllocator& allocator = {}) noexcept;
+ACDF_ONCE Verdict check(const u8* bytes, u64 size, const LoadOptions& options, FindingSink sink, void* context,
+                        Parts& parts) noexcept;
 
 } // namespace acdf

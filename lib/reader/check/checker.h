@@ -71,3 +71,11 @@ ACDF_ONCE void check_environment(const Payload& description, const Payload& bins
 ACDF_ONCE void check_partner(const Payload& payload, u32 kind, Report& report, Parts& parts) noexcept;
 
 } // namespace acdf
+
+/// A file that has no HALV, but for DESC and META unchecked: for AcdfCurves::check.
+struct AcdfUncheckedFile {
+    const acdf::Payloads& payloads;
+    acdf::u32 kind;
+    acdf::Report& report;
+    acdf::Parts& parts; ///< what is right is set
+};

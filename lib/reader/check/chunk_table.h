@@ -32,8 +32,8 @@ struct ChunkName {
     }
 };
 
-/// Finds the payloads of all known chunks, and inflates those that are compressed within `limits`.
-ACDF_ONCE void read_payloads(const ChunkTable& table, const u8* bytes, const Limits& limits,
-                             const AcdfAllocator& allocator, Report& report, Parts& parts, Payloads& payloads);
+/// Finds the payloads of all known chunks, and inflates those that are compressed within the limits.
+ACDF_ONCE void read_payloads(const ChunkTable& table, const u8* bytes, const LoadOptions& options, Report& report,
+                             Parts& parts, Payloads& payloads);
 
 } // namespace acdf

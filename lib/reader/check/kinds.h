@@ -5,21 +5,19 @@
 
 namespace acdf {
 
-/// All that lies beside DESC and META, but HALV; needs parts.description.
-ACDF_ONCE void check_kind(const Payloads& payloads, u32 kind, Report& report, Parts& parts) noexcept;
-
 /// BINS; needs parts.description. Sets parts.bins if its length is right; true: its shares are, too.
 ACDF_ONCE bool check_bins(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// Whether there are as many bins as the indexed axes make.
 ACDF_ONCE void check_bin_count(const Payload& payload, int rule, u64 bins, Report& report,
                                const Parts& parts) noexcept;
-/// BINS and TREE; needs parts.description. Sets parts.bins, parts.tree.
-void check_tree(const Payload& bins, const Payload& tree, u32 kind, Report& report, Parts& parts) noexcept;
-/// The same of local environments, and LOCL. Sets parts.local.
-ACDF_ONCE void check_local_kind(const Payload& description, const Payload& local, Report& report,
-                                Parts& parts) noexcept;
-/// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
-ACDF_ONCE void check_brdf_kind(const Payloads& payloads, Report& report, Parts& parts) noexcept;
+/// Axes of a local environment whose normals are the corners of an octahedron, and its bins.
+ACDF_ONCE void check_local_axes(const Payload& description, Report& report, const Parts& parts) noexcept;
+/// LOCL. Sets parts.local.
+ACDF_ONCE void check_local_header(const Payload& description, const Payload& local, Report& report,
+                                  Parts& parts) noexcept;
+/// Axes of a BRDF, whose second one is `rows`, its bins, and VIEW. Sets parts.views and parts.nodes.
+ACDF_ONCE void check_brdf_kind(const Payloads& payloads, const WantedAxis& rows, Report& report,
+                               Parts& parts) noexcept;
 /// What a BRDF on one tree of halvings has beside HALV: BINS, NORM and VIEW; needs parts.halvings. Sets what
 /// check_rows and check_brdf_kind set.
 ACDF_ONCE void check_halved_brdf(const Payloads& payloads, Report& report, Parts& parts) noexcept;

@@ -19,35 +19,24 @@ const char* octahedral_fault(const AcdfAxis& axis) {
     return "resolution";
 }
 
-constexpr WantedAxis grid_axes[2] = {
-    {"normal theta", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 0.0, ACDF_PI, 65536},
-    {"normal phi", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, ACDF_PI, -ACDF_PI, 65536},
-};
+} // namespace
 
-void check_local_axes(const Payload& payload, Report& report, const Parts& parts) {
+void check_local_axes(const Payload& payload, Report& report, const Parts& parts) noexcept {
     const AcdfDescription& d = *parts.description;
-    if (d.axis_count != 3 && d.axis_count != 4) {
+    if (d.axis_count != 3) {
         report.add(7003, payload.at(offsetof(AcdfDescription, axis_count)), "a local environment with %u axes",
                    d.axis_count);
         return;
     }
     check_environment_axes(payload, report, parts);
-    u64 bins = 1;
-    for (u32 i = 2; i < d.axis_count; ++i) {
-        const AcdfAxis& axis = parts.axes[i];
-        const char* fault = d.axis_count == 3 ? octahedral_fault(axis) : axis_fault(axis, grid_axes[i - 2]);
-        if (fault)
-            report.add(7003, payload.at(sizeof d + i * sizeof axis),
-                       "axis %u is not one of normals: the %s differs", i, fault);
-        bins *= axis.resolution;
-    }
-    if (d.bin_count != 0) check_bin_count(payload, 7004, bins, report, parts); // 0: rule 5007
+    const AcdfAxis& normals = parts.axes[2];
+    if (const char* fault = octahedral_fault(normals))
+        report.add(7003, payload.at(sizeof d + 2 * sizeof normals), "axis 2 is not one of normals: the %s differs",
+                   fault);
+    if (d.bin_count != 0) check_bin_count(payload, 7004, normals.resolution, report, parts); // 0: rule 5007
 }
 
-} // namespace
-
-void check_local_kind(const Payload& description, const Payload& payload, Report& report, Parts& parts) noexcept {
-    check_local_axes(description, report, parts);
+void check_local_header(const Payload& description, const Payload& payload, Report& report, Parts& parts) noexcept {
     const auto* header = reinterpret_cast<const AcdfLocalHeader*>(payload.data);
     if (!payload.data) {
         report.add(7005, description.at(0), "LOCL is missing");

@@ -63,10 +63,8 @@ void check_rows(const Payloads& payloads, Report& report, Parts& parts) noexcept
 }
 
 void check_normals(const Payloads& payloads, Report& report, Parts& parts) noexcept {
-    check_local_kind(payloads.of[chunk_description], payloads.of[chunk_local], report, parts);
-    if (parts.description->axis_count != 3)
-        report.add(7003, payloads.of[chunk_description].at(offsetof(AcdfDescription, axis_count)),
-                   "a local environment of rows with %u axes", parts.description->axis_count);
+    check_local_axes(payloads.of[chunk_description], report, parts);
+    check_local_header(payloads.of[chunk_description], payloads.of[chunk_local], report, parts);
     check_rows(payloads, report, parts);
 }
 

@@ -20,6 +20,12 @@ Status none(const char* why) {
     return status;
 }
 
+bool has_halvings(const File& file) {
+    if (file.kind() == ACDF_KIND_ENVIRONMENT) return file.environment().data().halved;
+    if (file.kind() == ACDF_KIND_LOCAL) return file.local().data().environment.halved;
+    return file.kind() != ACDF_KIND_BRDF || file.brdf().data().halved;
+}
+
 } // namespace
 
 ShaderTables::~ShaderTables() { give_block({}, block_); }
@@ -33,9 +39,8 @@ Status ShaderTables::make(const File& file, ShaderTables& out) noexcept {
     out = ShaderTables();
     if (file.kind() == ACDF_KIND_TABLE)
         return none("it is neither an environment nor a local environment nor a BRDF");
-    if (!acdf::make_walk(file, out.block_))
-        return none("its cells tilt (--fit pdf), too many share their curves, its maps break a rule, or memory is "
-                    "too little");
+    if (!has_halvings(file)) return none("its fit has curves; make it with --fit variance");
+    if (!acdf::make_walk(file, out.block_)) return none("its maps break a rule, or memory is too little");
     return {};
 }
 

@@ -1,7 +1,5 @@
 #include "shader/tables/sides.h"
 
-#include <acdf/tree.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -89,7 +87,7 @@ int Sides::heights(const Cell& cell, Side* out) const {
 float Sides::density(const Cell& cell) const {
     if (cell.dark) return 0.0f;
     const double height = row(cell.first[1]).z - row(cell.last[1]).z;
-    return acdf_cell_pdf(acdf_positive(cell.probability), cell.last[0] - cell.first[0], columns_, height, 1.0);
+    return acdf_cell_pdf(acdf_positive(cell.probability), cell.last[0] - cell.first[0], columns_, height);
 }
 
 } // namespace acdf

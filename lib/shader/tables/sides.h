@@ -15,7 +15,7 @@ namespace acdf {
 struct Cell {
     double probability;
     std::uint32_t first[2], last[2]; ///< positions
-    bool dark, tilted;
+    bool dark;
 };
 
 /// The part of a cell's side that lies in one piece of the sphere.
@@ -41,7 +41,7 @@ public:
     int azimuths(const Cell& cell, Side* out) const;
     /// Of axis 1 into out[2]; returns how many.
     int heights(const Cell& cell, Side* out) const;
-    /// The pdf of a cell without tilts, sr^-1; 0 for a dark one.
+    /// The pdf of a cell, sr^-1; 0 for a dark one.
     float density(const Cell& cell) const;
 
 private:

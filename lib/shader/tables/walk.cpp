@@ -33,7 +33,6 @@ AcdfLocal local_of(const File& file, const AcdfIndexed& maps) {
         return local;
     }
     const AcdfBrdf brdf = file.brdf().data();
-    local.environment.tree = brdf.tree;
     local.environment.halved = brdf.halved;
     local.rows_of_normals = brdf.rows_of_views;
     local.environment.columns = brdf.columns;
@@ -51,25 +50,16 @@ public:
           nodes_(environment_.halved ? acdf_halvings_nodes(environment_.halved) : nullptr),
           rows_(local_.rows_of_normals),
           cells_(environment_.parameterization, environment_.columns, environment_.rows),
-          most_leaves_(2 * std::size_t{file.tree_units()} + 64 +
-                       (environment_.halved ? 2 * std::size_t{environment_.halved->count} : 0)) {}
+          most_leaves_(64 + (environment_.halved ? 2 * std::size_t{environment_.halved->count} : 0)) {}
 
     bool make();
     bool assemble(AcdfBlock& block) const;
 
 private:
-    // A curve, and the cell that it divides: probabilities are those of tile or tree.
-    struct Divided {
-        const std::uint8_t* tree;
-        u32 at;
-        Cell box;
-    };
-
     bool brdf() const { return file_.kind() == ACDF_KIND_BRDF; }
     // Whether steps of an axis are rows of half-vectors (ACDF_HALF_ROWS).
     bool is_of_rows(u32 axis) const { return axis == 1 && brdf() && rows_; }
     u32 node(u32 axis, u32 position, u32 chance);
-    u32 tree(const std::uint8_t* tree, u32 root, const Cell& box);
     u32 halvings(u32 at, const AcdfSpan* steps, const Cell& box);
     u32 environment();
     u32 tile(const AcdfTopTile& tile);
@@ -78,7 +68,6 @@ private:
     const AcdfTopTile& map_tile(u32 at) const {
         return ACDF_TOP_ARRAY(AcdfTopTile, indexed_.top, indexed_.top->tiles)[at];
     }
-    u32 curve(const Divided& divided, const AcdfCurve& curve, u32 first, u32 last);
     u32 leaf(const Cell& cell);
     std::size_t stride() const { return rows_ ? rows_->splits : 0; }
     u32 row_count() const { return rows_ ? rows_->rows : 0; }
@@ -97,7 +86,7 @@ private:
     std::size_t most_leaves_, leaves_ = 0;
     bool failed_ = false;
     WalkParts parts_;
-    Growable<u32> bins_, views_, tree_links_;
+    Growable<u32> bins_, views_;
     WalkMaps maps_;
     u32 root_ = ACDF_WALK_NONE, mixture_ = ACDF_WALK_NONE;
 };
@@ -110,7 +99,7 @@ u32 WalkMaker::node(u32 axis, u32 position, u32 chance) {
 }
 
 u32 WalkMaker::leaf(const Cell& cell) {
-    if (++leaves_ > most_leaves_ || cell.tilted) failed_ = true;
+    if (++leaves_ > most_leaves_) failed_ = true;
     if (cell.dark || failed_) return ACDF_WALK_LEAF; // the first one
     Cell placed = cell;
     if (is_of_rows(1)) {
@@ -120,11 +109,6 @@ u32 WalkMaker::leaf(const Cell& cell) {
     const u32 link = cells_.add(placed, parts_);
     failed_ = parts_.failed();
     return link;
-}
-
-u32 WalkMaker::tree(const std::uint8_t* tree, u32 root, const Cell& box) {
-    const AcdfCurve whole = acdf_curve_at(tree, root);
-    return curve({tree, root, box}, whole, 0, whole.segments);
 }
 
 // A node of halvings, the box of it and the random numbers that lead there. A path passes at most 62 halvings.
@@ -154,7 +138,6 @@ u32 WalkMaker::halvings(u32 at, const AcdfSpan* steps, const Cell& box) {
 u32 WalkMaker::environment() {
     const AcdfHalvedTree* halved = environment_.halved;
     const AcdfSpan steps[2] = {{{0, ACDF_STEPS}}, {{0, ACDF_STEPS}}};
-    if (!halved) return tree(environment_.tree, environment_.root, cells_.whole());
     return halved->count ? halvings(0, steps, cells_.whole()) : leaf(cells_.whole());
 }
 
@@ -196,46 +179,9 @@ u32 WalkMaker::row_split(u32 at) {
     return made;
 }
 
-// Segments [first, last) of a curve, which are halved. A path passes at most 64 curves.
-u32 WalkMaker::curve(const Divided& divided, const AcdfCurve& curve, u32 first, u32 last) {
-    const u32 axis = acdf_curve_axis(&curve), maximum = acdf_curve_maximum(&curve);
-    const u32 low = acdf_curve_cumulative(&curve, first), high = acdf_curve_cumulative(&curve, last);
-    if (failed_) return ACDF_WALK_LEAF;
-    if (low == high) { // dark, all of them
-        Cell dark = divided.box;
-        dark.dark = true;
-        return leaf(dark);
-    }
-    if (first + 1 < last) {
-        const u32 middle = first + (last - first) / 2, border = acdf_curve_cumulative(&curve, middle);
-        AcdfRange range = {divided.box.first[axis], divided.box.last[axis], 0.0};
-        acdf_curve_narrow(&curve, middle, &range);
-        const u32 at = node(axis, range.low, chance_of(border - low, high - border));
-        const u32 lower = this->curve(divided, curve, first, middle),
-                  upper = this->curve(divided, curve, middle, last);
-        if (failed_) return ACDF_WALK_LEAF;
-        parts_.nodes[at].lower = lower;
-        parts_.nodes[at].upper = upper;
-        return at;
-    }
-    Divided part = divided;
-    AcdfRange range = {divided.box.first[axis], divided.box.last[axis], 0.0};
-    acdf_curve_narrow(&curve, first, &range);
-    part.box.first[axis] = range.low;
-    part.box.last[axis] = range.high;
-    part.box.tilted = part.box.tilted || range.tilt != 0.0;
-    part.box.probability *= static_cast<double>(high - low) / maximum;
-    const u32 link = acdf_curve_link(&curve, first);
-    if (link == 0) return leaf(part.box);
-    part.at += link;
-    const AcdfCurve child = acdf_curve_at(part.tree, part.at);
-    return this->curve(part, child, 0, child.segments);
-}
-
 // A power of two that brings shares, which are only compared, to where the products of floats neither end nor
 // begin.
 float WalkMaker::unit() const {
-    if (!rows_) return 1.0f;
     float most = 0.0f;
     for (u32 i = 0; i < file_.description().bin_count; ++i) most = std::max(most, local_.bins[i].share);
     return most > 0.0f ? static_cast<float>(std::ldexp(1.0, -std::max(std::ilogb(most), -126))) : 1.0f;
@@ -243,16 +189,10 @@ float WalkMaker::unit() const {
 
 bool WalkMaker::bins() {
     const u32 count = file_.description().bin_count;
-    const bool trees = !rows_;
     const float scale = unit();
-    const u32* const links = trees ? tree_links_.add(file_.tree_units(), ACDF_WALK_NONE) : nullptr;
-    if (trees && !links) return false;
     for (u32 i = 0; i < count && !failed_; ++i) {
         const AcdfBin& bin = local_.bins[i];
-        const bool sampled = bin.root != ACDF_NO_ROOT && (bin.share > 0.0f || brdf());
-        if (trees && sampled && tree_links_[bin.root] == ACDF_WALK_NONE) // several may have the same
-            tree_links_[bin.root] = tree(environment_.tree, bin.root, cells_.whole());
-        bins_.add(trees && sampled ? tree_links_[bin.root] : bin.root);
+        bins_.add(bin.root);
         bins_.add(acdf_float_bits(bin.share * scale));
     }
     return !(failed_ || bins_.failed());
@@ -329,8 +269,6 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     out[ACDF_WALK_ENVIRONMENT] = root_;
     out[ACDF_WALK_MIXTURE] = mixture_;
     out[ACDF_WALK_SUBDIVISIONS] = local_.subdivisions;
-    out[ACDF_WALK_COLUMNS] = local_.columns;
-    out[ACDF_WALK_ROWS] = local_.rows;
     out[ACDF_WALK_BIN_COUNT] = brdf() ? 0 : static_cast<u32>(bins_.size() / 2);
     out[ACDF_WALK_STRIDE] = static_cast<u32>(stride());
     out[ACDF_WALK_COSINE] = float_bits(local_.cosine_share);

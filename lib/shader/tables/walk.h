@@ -8,8 +8,7 @@
 namespace acdf {
 
 /// The words of an environment, a local environment or a BRDF, in `block`, which the caller gives back. False where
-/// there are none: for cells that tilt, for curves that so many share that the cells are more than the file has
-/// bytes, for rows of 4 GiB, for maps that break a rule, and where memory fails.
+/// there are none: for rows of 4 GiB, for maps that break a rule, and where memory fails.
 bool make_walk(const File& file, AcdfBlock& block) noexcept;
 
 } // namespace acdf

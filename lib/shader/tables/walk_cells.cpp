@@ -55,7 +55,7 @@ bool WalkCells::remember(std::size_t most) noexcept {
     return grid_.parameterization != ACDF_PARAM_LATLONG || sides_.remember(most);
 }
 
-Cell WalkCells::whole() const noexcept { return {1.0, {0, 0}, {grid_.columns, grid_.rows}, false, false}; }
+Cell WalkCells::whole() const noexcept { return {1.0, {0, 0}, {grid_.columns, grid_.rows}, false}; }
 
 u32 WalkCells::key(u32 axis, u32 position) const noexcept {
     const double part = static_cast<double>(position) / steps(axis);
@@ -82,9 +82,9 @@ u32 WalkCells::add(const Cell& cell, WalkParts& out) const noexcept {
 u32 WalkCells::square(const Cell& cell, WalkParts& out) const noexcept {
     WalkLeaf leaf = {0, 0.0f, {}};
     const AcdfGrid grid = acdf_environment_grid(&grid_);
-    const AcdfRange range[2] = {{cell.first[0], cell.last[0], 0.0}, {cell.first[1], cell.last[1], 0.0}};
-    const double margin[2] = {kSquareMargin, kSquareMargin}, t[2] = {0.5, 0.5};
-    leaf.density = acdf_grid_pdf(&grid, range, t, acdf_positive(cell.probability));
+    const AcdfRange range[2] = {{cell.first[0], cell.last[0]}, {cell.first[1], cell.last[1]}};
+    const double margin[2] = {kSquareMargin, kSquareMargin};
+    leaf.density = acdf_grid_pdf(&grid, range, acdf_positive(cell.probability));
     for (u32 axis = 0; axis < 2; ++axis) {
         const double count = steps(axis);
         set_axis(cell.first[axis] / count, cell.last[axis] / count, margin, leaf.axes[axis]);

@@ -1,6 +1,9 @@
 // The symbols of acdf/arrays/arrays.h give what the inline functions give, and nothing for files of other kinds.
+#include "tests/lib/curves/open.h"
+
 #include <acdf/acdf.h>
 #include <acdf/arrays/arrays.h>
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -23,9 +26,9 @@ constexpr std::size_t kCount = 1000, kEach = 7;
 
 /// The same file through both interfaces, random numbers, and directions all over the sphere.
 struct Both {
-    explicit Both(const std::string& path) : handle(acdf_open(path.c_str(), nullptr), acdf_close), u(2 * kCount) {
+    explicit Both(const std::string& path) : handle(acdf_test::open_in_c(path.c_str()), acdf_close), u(2 * kCount) {
         EXPECT_TRUE(handle) << path;
-        EXPECT_TRUE(acdf::File::open(path.c_str(), file).ok());
+        EXPECT_TRUE(acdf::File::open(path.c_str(), file, acdf::with_curves()).ok());
         for (std::size_t i = 0; i < kCount; ++i) {
             u[2 * i] = (static_cast<double>(i) + 0.5) / kCount;
             u[2 * i + 1] = std::fmod(static_cast<double>(i) * 0.6180339887498949, 1.0);

@@ -6,6 +6,7 @@
 #include "tests/lib/reader/local_loaded.h"
 
 #include <acdf/batch/batch.h>
+#include <acdf/curves/curves.h>
 
 #include <algorithm>
 
@@ -63,7 +64,7 @@ TEST(ConditionBatch, GivesTheBitsOfSingleCallsOfGoldenFiles) {
             acdf::LoadOptions options;
             options.tables = tables;
             acdf::File file;
-            ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, options).ok());
+            ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves(options)).ok());
             expect_same(file);
         }
     });

@@ -5,6 +5,7 @@
 #include "tests/lib/reader/random_halvings.h"
 
 #include <acdf/batch/batch.h>
+#include <acdf/curves/curves.h>
 
 namespace batch_test {
 namespace {
@@ -58,7 +59,7 @@ TEST(EnvironmentBatch, GivesTheBitsOfSingleCallsOfGoldenFiles) {
             acdf::LoadOptions options;
             options.tables = tables;
             acdf::File file;
-            ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, options).ok());
+            ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves(options)).ok());
             if (file.kind() == ACDF_KIND_ENVIRONMENT)
                 with_each_target([&] { expect_same(file.environment(), 3000); });
         }

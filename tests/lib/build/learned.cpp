@@ -2,6 +2,7 @@
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/build/walled_floor.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/learn.h>
 
 #include <array>
@@ -55,7 +56,7 @@ struct Ray {
 /// Light samples of a renderer.
 std::vector<Ray> rays(std::uint64_t count, const Wall& wall = {}) {
     File file;
-    EXPECT_TRUE(File::from_memory(light().data(), light().size(), file).ok());
+    EXPECT_TRUE(File::from_memory(light().data(), light().size(), file, acdf::with_curves()).ok());
     const LocalEnvironmentView view = file.local();
     std::mt19937_64 random(5);
     std::vector<Ray> out;

@@ -7,6 +7,7 @@
 #include "compress/local/fit_separate.h"
 #include "compress/local/light.h"
 
+#include <acdf/curves/curves.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +40,7 @@ build::Local build(const build::LocalOptions& options) {
 
 File load(const build::Local& local) {
     File file;
-    const Status status = File::from_memory(local.bytes.data(), local.bytes.size(), file);
+    const Status status = File::from_memory(local.bytes.data(), local.bytes.size(), file, acdf::with_curves());
     EXPECT_TRUE(status.ok()) << status.message;
     return file;
 }
@@ -61,7 +62,7 @@ void expect_each_lit_texel_is_a_cell(const build::Local& local) {
     const auto tiles = static_cast<std::uint32_t>(build::tile_boxes(file).size());
     for (std::uint32_t t = 0; t < tiles; ++t)
         build::for_each_tile_cell(file, t, [](const build::Cell& cell) {
-            const AcdfRange &column = cell.range[0], &row = cell.range[1];
+            const AcdfTiltedRange &column = cell.range[0], &row = cell.range[1];
             const std::uint32_t texels = (column.high - column.low) * (row.high - row.low);
             if (texels > 1) {
                 EXPECT_EQ(lit_probe().row(row.low)[column.low], 0.0f);

@@ -8,6 +8,7 @@
 #include "tests/inputs/synthetic.h"
 
 #include <acdf/builder.h>
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -47,7 +48,7 @@ struct MadeLocal {
         const builder::Status status = builder::local(target, options, local);
         EXPECT_TRUE(status.ok()) << status.message;
         if (!status.ok()) return;
-        EXPECT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
+        EXPECT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file, acdf::with_curves()).ok());
     }
 };
 

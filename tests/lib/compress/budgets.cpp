@@ -8,6 +8,7 @@
 #include "compress/store/store.h"
 #include "input/probe/probe.h"
 
+#include <acdf/curves/curves.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,7 +82,7 @@ std::vector<std::uint8_t> usual_file(const compress::Target& target, const compr
 
 build::Accuracy measured(const std::vector<std::uint8_t>& bytes, const compress::Target& target) {
     File file;
-    const Status status = File::from_memory(bytes.data(), bytes.size(), file);
+    const Status status = File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
     EXPECT_TRUE(status.ok()) << status.message;
     return build::measure_environment(file, target);
 }

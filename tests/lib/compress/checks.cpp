@@ -9,6 +9,7 @@
 #include "compress/halvings/fit.h"
 #include "compress/store/store.h"
 
+#include <acdf/curves/curves.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -183,11 +184,11 @@ void expect_chi_square(const char* what, const std::vector<std::uint32_t>& obser
 double rounding_bound(const Cell& cell, const Where& place, const Target& target) {
     if (cell.range[0].tilt == 0.0 && cell.range[1].tilt == 0.0) return 0.0;
     const auto z_of = [&](double row) { return std::cos(kPi * row / target.rows); };
-    const auto share = [](const AcdfRange& range, double t, double error) {
+    const auto share = [](const AcdfTiltedRange& range, double t, double error) {
         const double density = std::max(1.0 - std::abs(range.tilt), 1.0 + range.tilt * (2.0 * t - 1.0));
         return 2.0 * std::abs(range.tilt) / density * error;
     };
-    const AcdfRange &columns = cell.range[0], &rows = cell.range[1];
+    const AcdfTiltedRange &columns = cell.range[0], &rows = cell.range[1];
     const double width = columns.high - columns.low, height = z_of(rows.low) - z_of(rows.high);
     if (is_octahedral(target)) { // a sample is moved inside by 2^-23 of the side, and by rounding less than that
         const double tall = rows.high - rows.low;
@@ -314,7 +315,7 @@ void check_fit(const Target& target, const NamedFit& fit) {
     description.total = acdf::compress::integral(target);
     const auto bytes = stored(target, fit.options, description);
     acdf::File file;
-    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
     ASSERT_TRUE(status.ok()) << status.message;
 
     const auto accuracy = acdf::build::measure_environment(file, target);

@@ -1,7 +1,9 @@
 // The frozen files of every version: format/make_golden.cpp makes those of the present one.
 #include "tests/inputs/directions.h"
 #include "tests/inputs/paths.h"
+#include "tests/lib/curves/open.h"
 #include "tests/lib/reader/golden_numbers.h"
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -48,7 +50,7 @@ protected:
         const fs::path path = kGolden / (std::string(GetParam()) + ".acdf");
         acdf::LoadOptions walked; // as SPEC.md says it, to the last bit
         walked.tables = false;
-        const acdf::Status status = acdf::File::open(path.c_str(), file_, walked);
+        const acdf::Status status = acdf::File::open(path.c_str(), file_, acdf::with_curves(walked));
         ASSERT_TRUE(status.ok()) << status.message;
         for (const auto& v : acdf_test::golden_numbers<6>(kGolden / (std::string(GetParam()) + ".txt")))
             lines_.push_back(parse(v));
@@ -159,7 +161,9 @@ TEST(GoldenFrame, DirectionsDerivedByHand) {
     for (const HandMade& hand : kHandMade) {
         SCOPED_TRACE(std::string(hand.name) + " " + std::to_string(hand.u[0]) + " " + std::to_string(hand.u[1]));
         acdf::File file;
-        ASSERT_TRUE(acdf::File::open((kGolden / (std::string(hand.name) + ".acdf")).c_str(), file).ok());
+        ASSERT_TRUE(
+            acdf::File::open((kGolden / (std::string(hand.name) + ".acdf")).c_str(), file, acdf::with_curves())
+                .ok());
         const auto s = file.environment().sample(hand.u[0], hand.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_NEAR(s.direction[i], hand.direction[i], 1e-5);
         EXPECT_NEAR(s.pdf / hand.pdf, 1.0, 1e-4); // 16-bit probabilities
@@ -168,7 +172,7 @@ TEST(GoldenFrame, DirectionsDerivedByHand) {
 
 TEST(GoldenFrame, PdfIsZeroInEveryMirrorImage) {
     acdf::File file;
-    ASSERT_TRUE(acdf::File::open((kGolden / "one_texel.acdf").c_str(), file).ok());
+    ASSERT_TRUE(acdf::File::open((kGolden / "one_texel.acdf").c_str(), file, acdf::with_curves()).ok());
     const double x = kMiddleSin * kSin22, y = kMiddleSin * kCos22, z = kMiddleZ;
     const double images[][3] = {{-x, y, z}, {x, -y, z}, {x, y, -z}, {-x, -y, z}, {y, x, z}, {x, z, y}, {z, x, y}};
     const float there[3] = {float(x), float(y), float(z)};
@@ -190,9 +194,10 @@ std::uint32_t codec_of_tree(const acdf::File& file) { return chunk_of(file, ACDF
 
 TEST(GoldenContents, EachFileHasWhatItIsFor) {
     const auto open = [](const char* name, acdf::File& file) {
-        const acdf::Status status = acdf::File::open((kGolden / (std::string(name) + ".acdf")).c_str(), file);
+        const acdf::Status status =
+            acdf::File::open((kGolden / (std::string(name) + ".acdf")).c_str(), file, acdf::with_curves());
         if (!status.ok()) throw std::runtime_error(status.message);
-        return acdf_curve_at(file.tree(), file.bin(0).root);
+        return acdf_curve_at(acdf_test::TreeOf(file).data, file.bin(0).root);
     };
     acdf::File one_texel, many, wide, deep, tilted, shared, zlib, planes;
     const AcdfCurve narrow_root = open("one_texel", one_texel);
@@ -204,7 +209,8 @@ TEST(GoldenContents, EachFileHasWhatItIsFor) {
     EXPECT_EQ(ACDF_CURVE_POSITION_CODE(wide_root.header), 1u);
     const AcdfCurve many_root = open("many_segments", many);
     EXPECT_EQ(ACDF_CURVE_LINK_CODE(many_root.header), 2u);
-    const AcdfCurve many_child = acdf_curve_at(many.tree(), many.bin(0).root + acdf_curve_link(&many_root, 0));
+    const AcdfCurve many_child =
+        acdf_curve_at(acdf_test::TreeOf(many).data, many.bin(0).root + acdf_curve_link(&many_root, 0));
     EXPECT_GT(many_child.segments, ACDF_CURVE_SHORT_SEGMENTS + 0u);
     EXPECT_EQ(ACDF_CURVE_CUMULATIVE_CODE(many_child.header), 1u);
     EXPECT_TRUE(open("tilted", tilted).tilts != nullptr);
@@ -212,8 +218,8 @@ TEST(GoldenContents, EachFileHasWhatItIsFor) {
     EXPECT_EQ(acdf_curve_link(&shared_root, 0), acdf_curve_link(&shared_root, 2));
     const AcdfCurve deep_root = open("deep", deep);
     std::uint32_t at = deep.bin(0).root + acdf_curve_link(&deep_root, 1);
-    const AcdfCurve second = acdf_curve_at(deep.tree(), at);
-    const AcdfCurve third = acdf_curve_at(deep.tree(), at + acdf_curve_link(&second, 2));
+    const AcdfCurve second = acdf_curve_at(acdf_test::TreeOf(deep).data, at);
+    const AcdfCurve third = acdf_curve_at(acdf_test::TreeOf(deep).data, at + acdf_curve_link(&second, 2));
     EXPECT_EQ(acdf_curve_axis(&third), acdf_curve_axis(&deep_root));
     open("zlib", zlib);
     open("planes", planes);
@@ -233,7 +239,9 @@ TEST(GoldenContents, EachTreeOfHalvingsHasWhatItIsFor) {
                                  {"halvings_leaf", ACDF_CODEC_NONE, 8, 0}}) {
         SCOPED_TRACE(wanted.name);
         acdf::File file;
-        ASSERT_TRUE(acdf::File::open((kGolden / (std::string(wanted.name) + ".acdf")).c_str(), file).ok());
+        ASSERT_TRUE(
+            acdf::File::open((kGolden / (std::string(wanted.name) + ".acdf")).c_str(), file, acdf::with_curves())
+                .ok());
         const AcdfChunk* chunk = chunk_of(file, ACDF_CHUNK_HALVINGS);
         ASSERT_NE(chunk, nullptr);
         EXPECT_EQ(chunk_of(file, ACDF_CHUNK_TREE), nullptr);
@@ -253,7 +261,7 @@ TEST(GoldenContents, EachTreeOfHalvingsHasWhatItIsFor) {
 /// What a file says once it is decompressed, as text.
 std::string decoded(const fs::path& path) {
     acdf::File file;
-    const acdf::Status status = acdf::File::open(path.c_str(), file);
+    const acdf::Status status = acdf::File::open(path.c_str(), file, acdf::with_curves());
     EXPECT_TRUE(status.ok()) << path << ": " << status.message;
     if (!status.ok()) return {};
     const auto raw = [](const void* data, std::size_t size) {
@@ -264,7 +272,7 @@ std::string decoded(const fs::path& path) {
     if (const AcdfHalvedTree* halved = file.environment().data().halved)
         return text + raw(acdf_halvings_nodes(halved), halved->count * sizeof(AcdfHalving));
     for (std::uint32_t i = 0; i < file.description().bin_count; ++i) text += raw(&file.bin(i), sizeof(AcdfBin));
-    text += raw(file.tree(), std::size_t{2} * file.tree_units());
+    text += raw(acdf_test::TreeOf(file).data, std::size_t{2} * acdf_test::TreeOf(file).units);
     for (std::uint32_t i = 0; i < file.metadata_count(); ++i) {
         acdf::Text key, value;
         file.metadata(i, key, value);

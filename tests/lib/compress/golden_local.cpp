@@ -1,6 +1,7 @@
 // The frozen local environments of every version: format/make_golden.cpp makes those of the present one.
 #include "tests/lib/reader/golden_numbers.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -20,7 +21,8 @@ TEST_P(GoldenLocal, SamplesTheSameSamples) {
     acdf::LoadOptions options; // as SPEC.md says it, to the last bit
     options.tables = false;
     acdf::File walked;
-    ASSERT_TRUE(acdf::File::open((kGoldenLocal + GetParam() + ".acdf").c_str(), walked, options).ok());
+    ASSERT_TRUE(
+        acdf::File::open((kGoldenLocal + GetParam() + ".acdf").c_str(), walked, acdf::with_curves(options)).ok());
     for (const acdf_test::GoldenSample& line : lines_) {
         const auto s = walked.local().sample(line.given, line.u[0], line.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_EQ(s.direction[i], line.direction[i]);
@@ -52,8 +54,8 @@ INSTANTIATE_TEST_SUITE_P(V1_0, GoldenLocal, ::testing::Values("local", "local_gr
 
 TEST(GoldenLocalContents, EachFileHasWhatItIsFor) {
     acdf::File local, grid;
-    ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local.acdf").c_str(), local).ok());
-    ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local_grid.acdf").c_str(), grid).ok());
+    ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local.acdf").c_str(), local, acdf::with_curves()).ok());
+    ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local_grid.acdf").c_str(), grid, acdf::with_curves()).ok());
     EXPECT_EQ(local.local().data().subdivisions, 2u);
     EXPECT_EQ(local.local().data().cosine_share, 0.0);
     EXPECT_EQ(local.bin(7).root, ACDF_NO_ROOT);
@@ -64,7 +66,7 @@ TEST(GoldenLocalContents, EachFileHasWhatItIsFor) {
 // Frame of normals, by hand: theta from +z, the first column of phi begins at -x and turns towards +y.
 TEST(GoldenLocalFrame, NormalsFindTheirBins) {
     acdf::File grid;
-    ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local_grid.acdf").c_str(), grid).ok());
+    ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local_grid.acdf").c_str(), grid, acdf::with_curves()).ok());
     const auto view = grid.local();
     const float left[3] = {-0.5f, 1.0f, 0.1f}, front[3] = {1.0f, 0.0f, 0.1f}, right[3] = {-0.5f, -1.0f, 0.1f};
     EXPECT_DOUBLE_EQ(view.irradiance(left), 3.0 * 0.125);

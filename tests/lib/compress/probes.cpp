@@ -6,6 +6,7 @@
 #include "build/accuracy/environment.h"
 #include "input/probe/probe.h"
 
+#include <acdf/curves/curves.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -55,7 +56,7 @@ protected:
     double relative_variance(const FitOptions& options) const {
         const auto bytes = acdf_test::environment_file(target_, options);
         acdf::File file;
-        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
         EXPECT_TRUE(status.ok()) << status.message;
         if (!status.ok()) return INFINITY;
         return acdf::build::measure_environment(file, target_).relative_variance;

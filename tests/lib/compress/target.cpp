@@ -5,6 +5,7 @@
 #include "compress/halvings/fit.h"
 #include "compress/store/store.h"
 
+#include <acdf/curves/curves.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -109,7 +110,7 @@ build::Accuracy measured(const compress::Target& target, const compress::Target&
     description.total = target.total;
     const std::vector<std::uint8_t> bytes = compress::store(compress::fit_halvings(target, fit), description);
     File file;
-    const Status status = File::from_memory(bytes.data(), bytes.size(), file);
+    const Status status = File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
     EXPECT_TRUE(status.ok()) << status.message;
     return build::measure_environment(file, other);
 }
@@ -124,7 +125,7 @@ TEST(Target, TheSumOfTheChannelsVariancesIsWhatIsMeasured) {
     description.total = target.total;
     const std::vector<std::uint8_t> bytes = compress::store(compress::fit_halvings(target, fit), description);
     File file;
-    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
+    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
     const EnvironmentView view = file.environment();
     double second = 0.0, squares = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {

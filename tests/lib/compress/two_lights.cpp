@@ -10,6 +10,7 @@
 #include "compress/halvings/fit.h"
 #include "compress/store/store.h"
 
+#include <acdf/curves/curves.h>
 #include <gtest/gtest.h>
 
 namespace {
@@ -52,7 +53,8 @@ protected:
         Fitted fitted = fit(target(), options);
         cascade_ = std::move(fitted.cascade);
         bytes_ = store(fitted.tree, environment_description(kSize, kSize));
-        const acdf::Status status = acdf::File::from_memory(bytes_.data(), bytes_.size(), file_);
+        const acdf::Status status =
+            acdf::File::from_memory(bytes_.data(), bytes_.size(), file_, acdf::with_curves());
         ASSERT_TRUE(status.ok()) << status.message;
     }
 
@@ -117,7 +119,7 @@ TEST_P(TwoLights, HalvingsNeedNoHelp) {
     HalvingsOptions options;
     options.goal.cells = 64;
     bytes_ = store(fit_halvings(target(), options), environment_description(kSize, kSize));
-    const acdf::Status status = acdf::File::from_memory(bytes_.data(), bytes_.size(), file_);
+    const acdf::Status status = acdf::File::from_memory(bytes_.data(), bytes_.size(), file_, acdf::with_curves());
     ASSERT_TRUE(status.ok()) << status.message;
     EXPECT_LT(relative_variance(), 1e-3); // of codes of ten bits or fewer
     EXPECT_GT(pdf(kB + 2, kLow[0] + 1), 0.0);

@@ -103,7 +103,7 @@ TEST(Product, PdfIntegratesToOne) {
         double sum = 0.0;
         for (std::uint32_t y = 0; y < grid.rows; ++y)
             for (std::uint32_t x = 0; x < grid.columns; ++x) {
-                const AcdfRange square[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
+                const AcdfRange square[2] = {{x, x + 1}, {y, y + 1}};
                 const double middle[2] = {0.5, 0.5};
                 const AcdfDirectionSample at = acdf_grid_position(&grid, square, middle, 1.0);
                 const float p = acdf_cut_pdf(&visible, &point.light, &point.cut, at.direction);

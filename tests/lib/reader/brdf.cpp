@@ -1,9 +1,11 @@
 // acdf/brdf.h against a decoder written from the specification (SPEC.md §11), on files of which no fit would
 // think.
+#include "tests/lib/curves/open.h"
 #include "tests/lib/reader/brdf_forms.h"
 #include "tests/lib/reader/brdf_loaded.h"
 
 #include <acdf/acdf.h>
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -242,7 +244,7 @@ TEST(BrdfReader, nearlyOppositeDirectionsHaveAPdf) {
         BrdfSpec spec = given;
         const Bytes bytes = spec.encode();
         acdf::File file;
-        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
         const acdf::BrdfView view = file.brdf();
         for (const float off : {1e-20f, 1e-32f, 1e-40f}) {
             const float wo[3] = {off, 0.6f, 0.8f}, wi[3] = {0.0f, -0.6f, -0.8f};
@@ -260,7 +262,7 @@ TEST(BrdfReader, viewsWithoutATableSampleThePartOfTheCosine) {
     for (BinSpec& bin : spec.bins) bin.share = 0.0f;
     const Bytes bytes = spec.encode();
     acdf::File file;
-    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
     const acdf::BrdfView view = file.brdf();
     const float wo[3] = {0.6f, 0.0f, 0.8f};
     for (int i = 0; i <= 64; ++i) {
@@ -285,7 +287,7 @@ TEST(BrdfReader, albedoIsThatOfTheNodesAndBetweenThem) {
 TEST(BrdfReader, cInterfaceGivesTheSameView) {
     const Bytes bytes = shared_brdf().encode();
     AcdfError error;
-    AcdfFile* file = acdf_from_memory(bytes.data(), bytes.size(), &error);
+    AcdfFile* file = acdf_test::from_memory_in_c(bytes.data(), bytes.size(), &error);
     ASSERT_NE(file, nullptr) << error.message;
     AcdfBrdf brdf;
     AcdfTable table;

@@ -1,7 +1,9 @@
 // The C interface gives what the C++ one gives, and says no where there is nothing.
+#include "tests/lib/curves/open.h"
 #include "tests/tools/run.h"
 
 #include <acdf/acdf.h>
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -19,12 +21,12 @@ std::string to_string(AcdfText text) { return text.data ? std::string(text.data,
 TEST(CApi, SamplesAsTheCppInterface) {
     const auto bytes = small_environment();
     AcdfError error;
-    const Handle handle(acdf_from_memory(bytes.data(), bytes.size(), &error), acdf_close);
+    const Handle handle(acdf_test::from_memory_in_c(bytes.data(), bytes.size(), &error), acdf_close);
     ASSERT_TRUE(handle) << error.message;
     EXPECT_EQ(error.code, ACDF_OK);
     EXPECT_STREQ(error.message, "");
     acdf::File file;
-    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
     AcdfEnvironment sky;
     ASSERT_EQ(acdf_environment(handle.get(), &sky), 1);
     EXPECT_EQ(sky.total, file.environment().total());
@@ -38,7 +40,7 @@ TEST(CApi, SamplesAsTheCppInterface) {
 
 TEST(CApi, ReturnsWhatIsInside) {
     const auto bytes = small_environment();
-    const Handle handle(acdf_from_memory(bytes.data(), bytes.size(), nullptr), acdf_close);
+    const Handle handle(acdf_test::from_memory_in_c(bytes.data(), bytes.size()), acdf_close);
     const AcdfFile* file = handle.get();
     ASSERT_TRUE(file);
     EXPECT_EQ(acdf_kind(file), ACDF_KIND_ENVIRONMENT);
@@ -62,7 +64,7 @@ TEST(CApi, ReturnsWhatIsInside) {
 
 TEST(CApi, NothingIsServedForNull) {
     const auto bytes = small_environment();
-    const Handle handle(acdf_from_memory(bytes.data(), bytes.size(), nullptr), acdf_close);
+    const Handle handle(acdf_test::from_memory_in_c(bytes.data(), bytes.size()), acdf_close);
     AcdfEnvironment sky;
     AcdfLocal local;
     AcdfBrdf brdf;
@@ -88,11 +90,11 @@ TEST(CApi, ErrorsAreThoseOfTheCppInterface) {
     EXPECT_EQ(acdf_open("/no/such/file.acdf", nullptr), nullptr);
     auto bytes = small_environment();
     bytes.back() = 1;
-    EXPECT_EQ(acdf_from_memory(bytes.data(), bytes.size(), &error), nullptr);
+    EXPECT_EQ(acdf_test::from_memory_in_c(bytes.data(), bytes.size(), &error), nullptr);
     EXPECT_EQ(error.code, ACDF_MALFORMED);
     EXPECT_EQ(error.rule, 4002);
     acdf::File file;
-    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
     EXPECT_STREQ(error.message, status.message);
     EXPECT_EQ(error.offset, status.offset);
     acdf_close(nullptr);

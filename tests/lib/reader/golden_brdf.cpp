@@ -1,6 +1,7 @@
 // The frozen BRDFs of every version (format/make_golden.cpp makes those of the present one).
 #include "tests/lib/reader/golden_numbers.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -38,7 +39,7 @@ INSTANTIATE_TEST_SUITE_P(V1_0, GoldenBrdf,
 TEST(GoldenBrdfContents, EachFileHasWhatItIsFor) {
     const auto opened = [](const char* name) {
         acdf::File file;
-        EXPECT_TRUE(acdf::File::open((kGoldenBrdfs + name + ".acdf").c_str(), file).ok());
+        EXPECT_TRUE(acdf::File::open((kGoldenBrdfs + name + ".acdf").c_str(), file, acdf::with_curves()).ok());
         return file;
     };
     const acdf::File brdf = opened("brdf"), mirrored = opened("brdf_mirrored"), turned = opened("brdf_anisotropic"),

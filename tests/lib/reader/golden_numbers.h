@@ -1,6 +1,7 @@
 // The numbers beside golden files: one sample a line, and the fixture of those that are sampled for a direction.
 #pragma once
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -44,7 +45,7 @@ class GoldenSamples : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {
         const std::string path = std::string(ACDF_TEST_DIR "/golden/v1.0/") + GetParam();
-        const acdf::Status status = acdf::File::open((path + ".acdf").c_str(), file_);
+        const acdf::Status status = acdf::File::open((path + ".acdf").c_str(), file_, acdf::with_curves());
         ASSERT_TRUE(status.ok()) << status.message;
         for (const std::array<double, 9>& v : golden_numbers<9>(path + ".txt"))
             lines_.push_back({{float(v[0]), float(v[1]), float(v[2])},

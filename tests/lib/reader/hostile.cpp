@@ -4,12 +4,13 @@
 // not with sanitizers (ACDF_COUNTS_WORK is 0): there the same files are only checked.
 #include "tests/fuzz/sample_file.h"
 #include "tests/inputs/sanitized.h"
+#include "tests/lib/curves/planes.h"
 #include "tests/lib/reader/brdf_builder.h"
 #include "tests/lib/reader/count_allocations.h"
 #include "tests/lib/reader/load.h"
 #include "tests/lib/reader/normals_builder.h"
-#include "tests/lib/reader/planes.h"
 
+#include <acdf/curves/curves.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -72,7 +73,7 @@ int rule_of(const Bytes& file) {
     acdf::Status status;
     {
         Counted counted;
-        status = acdf::File::from_memory(exact.data(), exact.size(), loaded);
+        status = acdf::File::from_memory(exact.data(), exact.size(), loaded, acdf::with_curves());
     }
     const std::size_t most = 4 * file.size() + (1 << 20);
     if (bytes_taken > most) {
@@ -277,7 +278,8 @@ class Work : public testing::TestWithParam<Growing> {};
 std::uint64_t blocks_to_check(const Bytes& file) {
     const Exact exact(file);
     const std::uint64_t before = blocks;
-    acdf::validate(exact.data(), exact.size(), [](const acdf::Finding&) {});
+    acdf::validate(
+        exact.data(), exact.size(), [](const acdf::Finding&) {}, acdf::with_curves());
     return blocks - before;
 }
 

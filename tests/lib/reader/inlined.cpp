@@ -1,6 +1,7 @@
 // The reader inlined into callers that round doubles to floats on the spot: views, normals and pdfs are those
 // of the floats. gcc 12 forgets such a rounding where nothing holds it (acdf_as_given).
 #include <acdf/brdf.h>
+#include <acdf/curves/curves.h>
 #include <acdf/local.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -64,7 +65,7 @@ ACDF_TEST_INLINED float pdf_on_the_spot(const AcdfEnvironment& environment, cons
 acdf::File golden_file(const std::string& name) {
     acdf::File file;
     const std::string path = ACDF_TEST_DIR "/golden/v1.0/" + name + ".acdf";
-    EXPECT_TRUE(acdf::File::open(path.c_str(), file).ok()) << path;
+    EXPECT_TRUE(acdf::File::open(path.c_str(), file, acdf::with_curves()).ok()) << path;
     return file;
 }
 

@@ -1,10 +1,12 @@
 // Loading: damage of every kind, memory of every alignment, compression, metadata, files.
 #include "tests/lib/reader/load.h"
+#include "tests/lib/curves/open.h"
+#include "tests/lib/curves/planes.h"
 #include "tests/lib/reader/files.h"
 #include "tests/lib/reader/normals_builder.h"
-#include "tests/lib/reader/planes.h"
 
 #include <acdf/acdf.h>
+#include <acdf/curves/curves.h>
 
 #include <gtest/gtest.h>
 
@@ -58,9 +60,11 @@ TEST(Damage, everyByteUnderRightCrcsIsSafe) {
                 seal(damaged);
                 const Exact exact(damaged);
                 File loaded;
-                const Status status = File::from_memory(exact.data(), exact.size(), loaded);
+                const Status status = File::from_memory(exact.data(), exact.size(), loaded, acdf::with_curves());
                 ASSERT_EQ(status.ok(),
-                          acdf::validate(exact.data(), exact.size(), [](const acdf::Finding&) {}).valid());
+                          acdf::validate(
+                              exact.data(), exact.size(), [](const acdf::Finding&) {}, acdf::with_curves())
+                              .valid());
                 if (!status.ok() || loaded.kind() != ACDF_KIND_ENVIRONMENT) continue;
                 ++accepted;
                 for (int n = 0; n < 20; ++n) {
@@ -95,7 +99,7 @@ TEST(Versions, whatAnOlderReaderMustRead) {
     seal(file);
     EXPECT_TRUE(findings(file).rules.empty()) << findings(file).text;
     File loaded;
-    ASSERT_TRUE(File::from_memory(file.data(), file.size(), loaded).ok());
+    ASSERT_TRUE(File::from_memory(file.data(), file.size(), loaded, acdf::with_curves()).ok());
     EXPECT_EQ(loaded.header().version_minor, 9);
     EXPECT_EQ(loaded.environment().data().columns, 8u);
 }
@@ -118,7 +122,7 @@ TEST(Versions, errorCodesSayWhoIsToBlame) {
 TEST(Versions, otherKindsLoad) {
     const Bytes file = small_normals().encode();
     File loaded;
-    ASSERT_TRUE(File::from_memory(file.data(), file.size(), loaded).ok());
+    ASSERT_TRUE(File::from_memory(file.data(), file.size(), loaded, acdf::with_curves()).ok());
     EXPECT_EQ(loaded.kind(), ACDF_KIND_LOCAL);
     EXPECT_EQ(loaded.description().axis_count, 3u);
     EXPECT_EQ(loaded.axis(2).role, static_cast<std::uint32_t>(ACDF_AXIS_INDEXED));
@@ -147,60 +151,20 @@ TEST(Memory, usedInPlaceWhereAligned) {
     for (std::size_t shift = 0; shift <= 16; ++shift) {
         const Exact exact(bytes, shift);
         File file;
-        ASSERT_TRUE(File::from_memory(exact.data(), exact.size(), file).ok());
-        EXPECT_EQ(inside(file.tree(), exact), shift % 8 == 0) << shift;
+        ASSERT_TRUE(File::from_memory(exact.data(), exact.size(), file, acdf::with_curves()).ok());
+        EXPECT_EQ(inside(TreeOf(file).data, exact), shift % 8 == 0) << shift;
         EXPECT_EQ(inside(&file.header(), exact), shift % 8 == 0) << shift;
-        AcdfFile* c_file = acdf_from_memory(exact.data(), exact.size(), nullptr);
+        AcdfFile* c_file = acdf_test::from_memory_in_c(exact.data(), exact.size());
         ASSERT_NE(c_file, nullptr);
         EXPECT_EQ(inside(acdf_header(c_file), exact), shift % 8 == 0) << shift;
         acdf_close(c_file);
-        EXPECT_EQ(file.tree_units(), 18u);
+        EXPECT_EQ(TreeOf(file).units, 18u);
         EXPECT_EQ(file.size(), bytes.size());
         EXPECT_EQ(std::memcmp(&file.header(), bytes.data(), bytes.size()), 0);
         EXPECT_TRUE(findings(bytes).rules.empty());
-        EXPECT_TRUE(acdf::validate(exact.data(), exact.size(), [](const acdf::Finding&) {}).valid());
-    }
-}
-
-// Children in 300 segments of a curve of 301: more than a byte can count.
-EnvironmentSpec wide_preorder() {
-    EnvironmentSpec spec;
-    spec.columns = 301;
-    spec.rows = 4000;
-    std::vector<std::uint32_t> columns;
-    for (std::uint32_t i = 1; i < 301; ++i) columns.push_back(i);
-    CurveSpec root = even_curve(0, columns);
-    root.link_bytes = 2;
-    root.children.assign(301, -1);
-    spec.tree.curves.clear();
-    for (int i = 0; i < 300; ++i) root.children[static_cast<std::size_t>(300 - i)] = i + 1;
-    spec.tree.curves.push_back(root);
-    for (std::uint32_t i = 0; i < 300; ++i) spec.tree.curves.push_back(even_curve(1, {7 * i + 3, 9 * i + 1000}));
-    return spec;
-}
-
-TEST(Memory, planesAreTheSame) {
-    for (const EnvironmentSpec& spec : {preorder_environment(), chain(64), chain(1), wide_preorder()}) {
-        EnvironmentSpec same = spec;
-        const Bytes plain = same.encode(), packed = as_planes(spec).encode();
-        File a, b;
-        const Status plain_status = File::from_memory(plain.data(), plain.size(), a);
-        const Status status = File::from_memory(packed.data(), packed.size(), b);
-        ASSERT_TRUE(plain_status.ok()) << plain_status.message;
-        ASSERT_TRUE(status.ok()) << status.message;
-        EXPECT_TRUE(findings(packed).rules.empty()) << findings(packed).text;
-        ASSERT_EQ(a.tree_units(), b.tree_units());
-        EXPECT_EQ(std::memcmp(a.tree(), b.tree(), 2 * a.tree_units()), 0);
-        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(b.tree()) % 64, 0u);
-    }
-}
-
-TEST(Damage, planesWithAFlippedBitAreRefused) {
-    const Bytes file = as_planes(preorder_environment()).encode();
-    for (std::size_t bit = 0; bit < 8 * file.size(); ++bit) {
-        Bytes damaged = file;
-        damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ 1u << bit % 8);
-        ASSERT_FALSE(load(damaged).ok()) << bit;
+        EXPECT_TRUE(acdf::validate(
+                        exact.data(), exact.size(), [](const acdf::Finding&) {}, acdf::with_curves())
+                        .valid());
     }
 }
 
@@ -212,11 +176,11 @@ TEST(Memory, compressedIsTheSame) {
         spec.zlib = true;
         const Bytes packed = spec.encode();
         File a, b;
-        ASSERT_TRUE(File::from_memory(plain.data(), plain.size(), a).ok());
-        ASSERT_TRUE(File::from_memory(packed.data(), packed.size(), b).ok());
-        ASSERT_EQ(a.tree_units(), b.tree_units());
-        EXPECT_EQ(std::memcmp(a.tree(), b.tree(), 2 * a.tree_units()), 0);
-        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(b.tree()) % 64, 0u);
+        ASSERT_TRUE(File::from_memory(plain.data(), plain.size(), a, acdf::with_curves()).ok());
+        ASSERT_TRUE(File::from_memory(packed.data(), packed.size(), b, acdf::with_curves()).ok());
+        ASSERT_EQ(TreeOf(a).units, TreeOf(b).units);
+        EXPECT_EQ(std::memcmp(TreeOf(a).data, TreeOf(b).data, 2 * TreeOf(a).units), 0);
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(TreeOf(b).data) % 64, 0u);
         EXPECT_EQ(reinterpret_cast<std::uintptr_t>(&b.description()) % 64, 0u);
         EXPECT_EQ(b.metadata("key").size, 3000u);
         EXPECT_EQ(b.environment().data().root, a.environment().data().root);
@@ -231,7 +195,7 @@ TEST(Memory, filesMove) {
     const Bytes bytes = compressed().encode();
     File a;
     EXPECT_TRUE(a.empty());
-    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), a).ok());
+    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), a, acdf::with_curves()).ok());
     const acdf::EnvironmentView view = a.environment();
     const auto before = view.sample(0.3, 0.7);
     File b = std::move(a);
@@ -245,7 +209,7 @@ TEST(Memory, filesMove) {
     const auto after = view.sample(0.3, 0.7); // the view's bytes moved along
     EXPECT_EQ(std::memcmp(&before, &after, sizeof before), 0);
     const Bytes bad = {1, 2, 3};
-    EXPECT_FALSE(File::from_memory(bad.data(), bad.size(), c).ok());
+    EXPECT_FALSE(File::from_memory(bad.data(), bad.size(), c, acdf::with_curves()).ok());
     EXPECT_TRUE(c.empty()) << "a failed load leaves nothing behind";
 }
 
@@ -277,7 +241,7 @@ TEST(Memory, limitsHold) {
 TEST(Contents, metadata) {
     const Bytes bytes = complete_environment().encode();
     File file;
-    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
+    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
     ASSERT_EQ(file.metadata_count(), 2u);
     acdf::Text key, value;
     file.metadata(1, key, value);
@@ -288,7 +252,7 @@ TEST(Contents, metadata) {
     EXPECT_EQ(text(file.metadata("tool")), "test 1");
     EXPECT_EQ(file.metadata("too").data, nullptr);
     const Bytes none = EnvironmentSpec().encode();
-    ASSERT_TRUE(File::from_memory(none.data(), none.size(), file).ok());
+    ASSERT_TRUE(File::from_memory(none.data(), none.size(), file, acdf::with_curves()).ok());
     EXPECT_EQ(file.metadata_count(), 0u);
     EXPECT_EQ(file.metadata("tool").data, nullptr);
 }
@@ -298,7 +262,7 @@ TEST(Contents, fields) {
     spec.total = 12.5;
     const Bytes bytes = spec.encode();
     File file;
-    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
+    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
     EXPECT_EQ(file.kind(), ACDF_KIND_ENVIRONMENT);
     EXPECT_EQ(file.description().fit, static_cast<std::uint32_t>(ACDF_FIT_VARIANCE));
     EXPECT_EQ(file.description().channel_weights[1], 0.7152);

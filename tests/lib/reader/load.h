@@ -6,6 +6,7 @@
 
 #include "reader/check/check.h"
 
+#include <acdf/curves/curves.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -39,7 +40,7 @@ private:
 inline acdf::Status load(const Bytes& bytes, const acdf::Limits& limits = {}) {
     const Exact exact(bytes);
     acdf::File file;
-    return acdf::File::from_memory(exact.data(), exact.size(), file, limits);
+    return acdf::File::from_memory(exact.data(), exact.size(), file, acdf::with_curves(limits));
 }
 
 struct Findings {
@@ -59,7 +60,7 @@ inline Findings findings(const Bytes& bytes, const acdf::Limits& limits = {}) {
             out.last_offset = finding.offset;
             text << finding.number << " at " << finding.offset << ": " << finding.detail << '\n';
         },
-        limits);
+        acdf::with_curves(limits));
     out.text = text.str();
     return out;
 }

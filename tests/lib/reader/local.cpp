@@ -1,5 +1,6 @@
 // acdf/local.h against a decoder written from the specification, on files of which no fit would think.
 #include "tests/inputs/directions.h"
+#include "tests/lib/curves/open.h"
 #include "tests/lib/reader/load.h"
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
@@ -249,7 +250,7 @@ TEST(LocalView, compiledAsCIsTheSame) {
 
 TEST(LocalView, throughTheCInterface) {
     Bytes bytes = small_normals().encode();
-    AcdfFile* file = acdf_from_memory(bytes.data(), bytes.size(), nullptr);
+    AcdfFile* file = acdf_test::from_memory_in_c(bytes.data(), bytes.size());
     ASSERT_NE(file, nullptr);
     AcdfLocal local;
     AcdfEnvironment environment;
@@ -261,7 +262,7 @@ TEST(LocalView, throughTheCInterface) {
     EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
     acdf_close(file);
     bytes = complete_environment().encode();
-    file = acdf_from_memory(bytes.data(), bytes.size(), nullptr);
+    file = acdf_test::from_memory_in_c(bytes.data(), bytes.size());
     ASSERT_NE(file, nullptr);
     EXPECT_FALSE(acdf_local(file, &local));
     acdf_close(file);

@@ -3,6 +3,7 @@
 
 #include "tests/lib/reader/normals_builder.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -17,7 +18,7 @@ struct LoadedLocal {
     explicit LoadedLocal(LocalSpec spec) : LoadedLocal(spec.encode()) {}
     explicit LoadedLocal(const NormalsSpec& spec) : LoadedLocal(spec.encode()) {}
     explicit LoadedLocal(Bytes of) : bytes(std::move(of)) {
-        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
         EXPECT_TRUE(status.ok()) << status.message;
     }
     acdf::LocalEnvironmentView view() const { return file.local(); }

@@ -1,7 +1,9 @@
 // What the reader allocates: its calls are caught by the linker (--wrap), zlib's and the test's are not.
+#include "tests/lib/curves/open.h"
+#include "tests/lib/curves/planes.h"
 #include "tests/lib/reader/count_allocations.h"
-#include "tests/lib/reader/planes.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -32,7 +34,7 @@ TEST(Allocation, isBelowFourTimesTheFile) {
         acdf::File file;
         {
             Counted counted;
-            ASSERT_TRUE(acdf::File::from_memory(bytes.data() + 1, size, file).ok());
+            ASSERT_TRUE(acdf::File::from_memory(bytes.data() + 1, size, file, acdf::with_curves()).ok());
         }
         EXPECT_GT(bytes_taken, size); // the copy, so that the count is known to count
         EXPECT_LE(bytes_taken, 4 * in_memory);
@@ -45,7 +47,7 @@ void check_in_place(const Bytes& bytes) {
     acdf::LoadOptions options;
     options.tables = false;
     Counted counted;
-    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, options).ok());
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves(options)).ok());
 }
 
 TEST(Allocation, inPlaceOnlyTheScratchOfTheChecks) {
@@ -63,10 +65,10 @@ TEST(Allocation, nothingForWhatIsRefusedBefore) {
     limits.max_inflated_bytes = 100000;
     acdf::File file;
     Counted counted;
-    EXPECT_EQ(acdf::File::from_memory(bytes.data(), bytes.size(), file, limits).rule, 3012);
+    EXPECT_EQ(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves(limits)).rule, 3012);
     EXPECT_EQ(calls, 0u);
     limits.max_file_bytes = 100;
-    EXPECT_EQ(acdf::File::from_memory(bytes.data() + 1, bytes.size(), file, limits).rule, 1004);
+    EXPECT_EQ(acdf::File::from_memory(bytes.data() + 1, bytes.size(), file, acdf::with_curves(limits)).rule, 1004);
     EXPECT_EQ(calls, 0u);
 }
 
@@ -77,26 +79,26 @@ TEST(Allocation, planesTakeTwiceTheTreeForAMoment) {
     std::size_t in_place = 0;
     {
         Counted counted;
-        ASSERT_TRUE(acdf::File::from_memory(plain.data(), plain.size(), file).ok());
+        ASSERT_TRUE(acdf::File::from_memory(plain.data(), plain.size(), file, acdf::with_curves()).ok());
         in_place = bytes_taken;
     }
-    const std::size_t tree = 2 * file.tree_units();
+    const std::size_t tree = 2 * TreeOf(file).units;
     acdf::Limits limits;
     {
         Counted counted;
-        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, limits).ok());
+        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves(limits)).ok());
         EXPECT_LE(bytes_taken, in_place + tree + 64 + 2 * tree + 44);
     }
     limits.max_inflated_bytes = tree - 1;
     Counted counted;
-    EXPECT_EQ(acdf::File::from_memory(bytes.data(), bytes.size(), file, limits).rule, 3012);
+    EXPECT_EQ(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves(limits)).rule, 3012);
     EXPECT_EQ(calls, 0u);
 }
 
 TEST(Allocation, noneWhileSampling) {
     const Bytes bytes = complete_environment().encode();
     acdf::File file;
-    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
     const acdf::EnvironmentView view = file.environment();
     Counted counted;
     float sum = 0.0f;

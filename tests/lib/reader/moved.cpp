@@ -2,6 +2,7 @@
 #include "tests/cuda/moved_views.h"
 #include "tests/lib/reader/golden_files.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -105,7 +106,10 @@ TEST(MovedViews, SampleWhatTheyDrew) {
             acdf::LoadOptions options;
             options.tables = tables;
             std::optional<acdf::File> file(std::in_place);
-            ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), *file, options).ok());
+            ASSERT_TRUE(
+                acdf::File::from_memory(bytes.data(), bytes.size(), *file, acdf::with_curves(options)).ok());
+            AcdfMove moves[ACDF_MAX_MOVES];
+            if (file->memory(moves) == 0) continue; // tests/lib/curves/load.cpp
             ++kinds[file->kind()];
             switch (file->kind()) {
             case ACDF_KIND_ENVIRONMENT:

@@ -75,7 +75,7 @@ struct Mixture {
             const auto& box = cell.box;
             if (square[0] < box[0][0] || square[0] >= box[0][1] || square[1] < box[1][0] || square[1] >= box[1][1])
                 continue;
-            const AcdfRange range[2] = {{box[0][0], box[0][1], 0.0}, {box[1][0], box[1][1], 0.0}};
+            const AcdfRange range[2] = {{box[0][0], box[0][1]}, {box[1][0], box[1][1]}};
             return cell.probability / acdf_grid_solid_angle(&grid, range);
         }
         return 0.0;
@@ -162,7 +162,7 @@ TEST(NormalRows, samplesFollowThePdf) {
         for (std::uint32_t y = 0; y < grid.rows; ++y)
             for (std::uint32_t x = 0; x < grid.columns; ++x) {
                 const std::uint32_t square[2] = {x, y};
-                const AcdfRange range[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
+                const AcdfRange range[2] = {{x, x + 1}, {y, y + 1}};
                 probability[y / step[1] * across + x / step[0]] +=
                     mixture.pdf(grid, square) * acdf_grid_solid_angle(&grid, range);
             }

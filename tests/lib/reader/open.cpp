@@ -51,7 +51,7 @@ protected:
 TEST_F(Open, aFileIsReadWhole) {
     for (const Bytes& bytes : {complete_environment().encode(), compressed().encode()}) {
         File file;
-        const Status status = File::open(write("a.acdf", bytes).c_str(), file);
+        const Status status = File::open(write("a.acdf", bytes).c_str(), file, acdf::with_curves());
         ASSERT_TRUE(status.ok()) << status.message;
         EXPECT_EQ(status.rule, 0);
         EXPECT_EQ(file.size(), bytes.size());

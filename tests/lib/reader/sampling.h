@@ -5,6 +5,7 @@
 #include "tests/lib/reader/load.h"
 #include "tests/lib/reader/random_halvings.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/environment_view.h>
 
 #include <gtest/gtest.h>
@@ -22,7 +23,8 @@ struct Loaded {
 // Keeps the bytes beside the file that uses them.
 inline std::unique_ptr<Loaded> loaded(EnvironmentSpec spec) {
     auto out = std::unique_ptr<Loaded>(new Loaded{spec.encode(), {}, acdf::EnvironmentView()});
-    const acdf::Status status = acdf::File::from_memory(out->bytes.data(), out->bytes.size(), out->file);
+    const acdf::Status status =
+        acdf::File::from_memory(out->bytes.data(), out->bytes.size(), out->file, acdf::with_curves());
     EXPECT_TRUE(status.ok()) << status.message;
     if (status.ok()) out->view = out->file.environment();
     return out;

@@ -1,6 +1,7 @@
 // A file beside its tables for shaders.
 #pragma once
 
+#include <acdf/curves/curves.h>
 #include <acdf/shader/tables.h>
 
 #include <gtest/gtest.h>
@@ -20,7 +21,8 @@ struct WalkedFile {
     explicit WalkedFile(std::vector<std::uint8_t> given) : bytes(std::move(given)) {
         acdf::LoadOptions options;
         options.tables = false;
-        const acdf::Status loaded = acdf::File::from_memory(bytes.data(), bytes.size(), file, options);
+        const acdf::Status loaded =
+            acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves(options));
         EXPECT_TRUE(loaded.ok()) << loaded.message;
         status = acdf::ShaderTables::make(file, tables);
         EXPECT_EQ(status.ok(), tables.size() > 0) << status.message;

@@ -23,7 +23,9 @@ file(MAKE_DIRECTORY ${WORK})
 run(ignored ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/installed --component reader)
 file(RENAME ${WORK}/installed ${WORK}/prefix)
 refuse("builder" ${configure} -B ${WORK}/without) # the reader alone has none
-run(ignored ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component indexed) # which the builder needs
+foreach(room curves indexed visibility) # which the builder needs
+    run(ignored ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component ${room})
+endforeach()
 run(ignored ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component builder)
 
 # Three headers, each alone; nothing of the library's own is installed with them.

@@ -1,10 +1,11 @@
-// A light file by each room beside the reader: rooms LOCAL.acdf.
+// A light file by each room beside the reader, and one of curves: rooms LOCAL.acdf CURVES.acdf.
 #include <acdf/acdf.h>
 #include <acdf/arrays/arrays.h>
 #if __has_include(<acdf/batch/batch.h>)
 #include <acdf/batch/batch.h>
 #define BATCH 1
 #endif
+#include <acdf/curves/curves.h>
 #include <acdf/indexed/views.h>
 #include <acdf/product/product.h>
 #include <acdf/reader.h>
@@ -42,8 +43,12 @@ bool samples_in_arrays(const char* path, const acdf::LocalEnvironmentView& light
 } // namespace
 
 int main(int argc, char** argv) {
-    acdf::File file;
-    if (argc != 2 || !acdf::File::open(argv[1], file).ok() || file.kind() != ACDF_KIND_LOCAL) return 1;
+    acdf::File file, of_curves;
+    if (argc != 3 || acdf::File::open(argv[2], of_curves).code != acdf::ErrorCode::unsupported ||
+        !acdf::File::open(argv[2], of_curves, acdf::with_curves()).ok() ||
+        !(of_curves.environment().sample(0.3, 0.4).pdf > 0.0f))
+        return 1;
+    if (!acdf::File::open(argv[1], file).ok() || file.kind() != ACDF_KIND_LOCAL) return 1;
     const acdf::LocalEnvironmentView light = file.local();
     acdf::VisibleLocalView visible;
     if (!acdf::VisibleLocalView::of(file, visible).ok()) return 1;

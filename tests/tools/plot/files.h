@@ -8,6 +8,7 @@
 #include "build/probe/projection.h"
 #include "images/image_file.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -27,7 +28,7 @@ struct StoredEnvironment {
     File file;
 
     explicit StoredEnvironment(std::vector<std::uint8_t> b) : bytes(std::move(b)) {
-        const Status status = File::from_memory(bytes.data(), bytes.size(), file);
+        const Status status = File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
         EXPECT_TRUE(status.ok()) << status.message;
     }
     StoredEnvironment(const compress::Target& target, const compress::FitOptions& options)

@@ -418,7 +418,7 @@ ACDF_FN int acdf_mixed_invert(const AcdfMixed* sky, const float direction[3], do
     acdf_grid_fractions(&sky->grid, direction, position, range, t);
     for (axis = 0; axis < 2; ++axis) lowest[axis] = range[axis].low;
     acdf_mixed_strata(sky, lowest, strata);
-    for (axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t[axis]);
+    for (axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], t[axis]);
     u[1] = sky->sun_share + (1.0 - sky->sun_share) * u[1];
     if (u[1] > 1.0) u[1] = 1.0;
     return 1;

@@ -67,19 +67,14 @@ ACDF_FN2(ACDF_U32, acdf_lower_view, ACDF_TABLES, tables, ACDF_F32, z) {
     return low;
 }
 
-/* Adds what a bin gives, of rows, or as the only tree where its weight is the largest so far. */
+/* Adds the row of a bin. */
 ACDF_FN4(AcdfShaderView, acdf_view_with, ACDF_TABLES, tables, AcdfShaderView, given, ACDF_U32, bin, ACDF_F32,
          weight) {
     ACDF_LET(ACDF_U32, at) = ACDF_WORD(tables, ACDF_WALK_BINS) + 2u * bin;
     ACDF_LET(ACDF_U32, row) = ACDF_WORD(tables, at);
     ACDF_VAR(AcdfShaderView, view) = given;
-    if (ACDF_WORD(tables, ACDF_WALK_MIXTURE) != ACDF_WALK_NONE) {
-        view.mix = acdf_mixture_with(view.mix, row, weight * acdf_word_as_float(tables, at + 1u));
-        view.sum = acdf_mixture_weight(view.mix);
-    } else if (weight > view.sum) {
-        view.sum = weight;
-        view.mix.root = row;
-    }
+    view.mix = acdf_mixture_with(view.mix, row, weight * acdf_word_as_float(tables, at + 1u));
+    view.sum = acdf_mixture_weight(view.mix);
     return view;
 }
 
@@ -138,9 +133,6 @@ ACDF_FN4(AcdfShaderView, acdf_brdf_view_of, ACDF_TABLES, tables, ACDF_F32, x, AC
     view = acdf_view_around(tables, view, upper, azimuth, t);
     if (!(view.sum > 0.0f)) {
         view.mix.root = ACDF_WALK_NONE;
-    } else if (ACDF_WORD(tables, ACDF_WALK_MIXTURE) == ACDF_WALK_NONE) {
-        view.sum = 1.0f;
-        view.mix.weight0 = 1.0f;
     }
     return view;
 }

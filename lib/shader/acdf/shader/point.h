@@ -114,44 +114,7 @@ ACDF_FN4(AcdfShaderBins, acdf_bins_of_triangle, ACDF_U32, n, ACDF_F32, x, ACDF_F
     return bins;
 }
 
-/* The one of a lat-long grid of normals: acdf_latlong_bins. */
-ACDF_FN5(AcdfShaderBins, acdf_bins_of_grid, ACDF_U32, columns, ACDF_U32, rows, ACDF_F32, x, ACDF_F32, y, ACDF_F32,
-         z) {
-    ACDF_LET(ACDF_F32, sine) = ACDF_SQRT(x * x + y * y);
-    ACDF_LET(ACDF_F32, turn) = ACDF_SELECT(sine > 0.0f, acdf_half_turns(ACDF_ABS(y), x), 0.0f);
-    ACDF_LET(ACDF_F32, phi) = ACDF_SELECT(y < 0.0f, -turn, turn);
-    ACDF_LET(ACDF_U32, column) = ACDF_TO_U32(ACDF_TO_F32(columns) * (0.5f - 0.5f * phi));
-    ACDF_LET(ACDF_U32, row) = ACDF_TO_U32(ACDF_TO_F32(rows) * acdf_half_turns(sine, z));
-    ACDF_VAR(AcdfShaderBins, bins);
-    bins.bin0 = ACDF_MIN(row, rows - 1u) * columns + ACDF_SELECT(column < columns, column, 0u);
-    bins.bin1 = bins.bin0;
-    bins.bin2 = bins.bin0;
-    bins.weight0 = 1.0f;
-    bins.weight1 = 0.0f;
-    bins.weight2 = 0.0f;
-    return bins;
-}
-
-/* Where bins have trees: that of the nearest one. */
-ACDF_FN2(AcdfShaderPoint, acdf_point_of_bins, ACDF_TABLES, tables, AcdfShaderBins, bins) {
-    ACDF_VAR(ACDF_U32, bin) = bins.bin0;
-    ACDF_VAR(ACDF_F32, most) = bins.weight0;
-    if (bins.weight1 > most) {
-        bin = bins.bin1;
-        most = bins.weight1;
-    }
-    if (bins.weight2 > most) {
-        bin = bins.bin2;
-    }
-    ACDF_LET(ACDF_U32, at) = ACDF_WORD(tables, ACDF_WALK_BINS) + 2u * bin;
-    ACDF_LET(ACDF_U32, root) = ACDF_WORD(tables, at);
-    if (root == ACDF_WALK_NONE) {
-        return acdf_point_anywhere(tables);
-    }
-    return acdf_point_of_tree(ACDF_SELECT(acdf_word_as_float(tables, at + 1u) > 0.0f, root, ACDF_WALK_NONE));
-}
-
-/* Where bins have rows: a mixture of them. */
+/* A mixture of the rows of bins. */
 ACDF_FN2(AcdfShaderPoint, acdf_point_of_rows, ACDF_TABLES, tables, AcdfShaderBins, bins) {
     ACDF_LET(ACDF_U32, root) = ACDF_WORD(tables, ACDF_WALK_MIXTURE);
     ACDF_VAR(AcdfShaderPoint, here) = acdf_point_of_tree(root);
@@ -190,18 +153,8 @@ ACDF_FN4(AcdfShaderPoint, acdf_point_at, ACDF_TABLES, tables, ACDF_F32, nx, ACDF
     ACDF_LET(ACDF_F32, y) = y0 / length;
     ACDF_LET(ACDF_F32, z) = z0 / length;
     ACDF_LET(ACDF_U32, n) = ACDF_WORD(tables, ACDF_WALK_SUBDIVISIONS);
-    ACDF_VAR(AcdfShaderBins, bins);
-    if (n > 0u) {
-        bins = acdf_bins_of_triangle(n, x0, y0, z0); /* edges stay where they are */
-    } else {
-        bins = acdf_bins_of_grid(ACDF_WORD(tables, ACDF_WALK_COLUMNS), ACDF_WORD(tables, ACDF_WALK_ROWS), x, y, z);
-    }
-    ACDF_VAR(AcdfShaderPoint, here);
-    if (ACDF_WORD(tables, ACDF_WALK_MIXTURE) == ACDF_WALK_NONE) {
-        here = acdf_point_of_bins(tables, bins);
-    } else {
-        here = acdf_point_of_rows(tables, bins);
-    }
+    ACDF_VAR(AcdfShaderPoint, here) =
+        acdf_point_of_rows(tables, acdf_bins_of_triangle(n, x0, y0, z0)); /* edges stay where they are */
     here.cosine = acdf_word_as_float(tables, ACDF_WALK_COSINE);
     here.x = x;
     here.y = y;

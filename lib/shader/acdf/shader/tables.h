@@ -21,7 +21,7 @@ public:
 
     /// Makes the tables of `acdf/shader/walk.h` of a file that is not empty: of environments and local
     /// environments, on either grid. Of several maps those of acdf/shader/maps.h, of BRDFs those of
-    /// acdf/shader/brdf.h. `unsupported` where there are none: for tables, and for cells that tilt (--fit pdf).
+    /// acdf/shader/brdf.h. `unsupported` where there are none: for tables, and for the fits that have curves.
     /// `out` then is empty. Work and memory are in proportion to the cells, some 60 bytes each, and rows.
     /// Visibility cells are left out: a normal is served alike at every position.
     static Status make(const File& file, ShaderTables& out) noexcept;

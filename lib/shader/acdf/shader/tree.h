@@ -22,14 +22,12 @@ extern "C" {
 #define ACDF_WALK_SIZE 0u        /* of all, in words */
 #define ACDF_WALK_OCTAHEDRAL 1u  /* 1: positions lie on the octahedral square, 0: on a lat-long grid */
 #define ACDF_WALK_ENVIRONMENT 2u /* link of the tree of all normals */
-#define ACDF_WALK_MIXTURE 3u     /* link of what bins share; ACDF_WALK_NONE: each bin has a tree of its own */
+#define ACDF_WALK_MIXTURE 3u     /* link of what bins share; ACDF_WALK_NONE: there are no bins */
 #define ACDF_WALK_NODES 4u  /* 4 words each: axis (bit 31) and key, link of the lower part, of the upper, chance */
 #define ACDF_WALK_LEAVES 5u /* ACDF_LEAF_WORDS each */
-#define ACDF_WALK_SUBDIVISIONS 6u /* of the octahedron of normals; 0: normals lie on a lat-long grid */
-#define ACDF_WALK_COLUMNS 7u      /* of that grid */
-#define ACDF_WALK_ROWS 8u
-#define ACDF_WALK_BINS 9u       /* 2 words each: row (link, where bins have trees) and share, f32 */
-#define ACDF_WALK_BIN_COUNT 10u /* 0: the file stores no normals */
+#define ACDF_WALK_SUBDIVISIONS 6u /* of the octahedron of normals */
+#define ACDF_WALK_BINS 9u         /* 2 words each: row and share, f32 */
+#define ACDF_WALK_BIN_COUNT 10u   /* 0: the file stores no normals */
 /* f32, `stride` of them a row: the smaller of the parts that a split gives to its halves; negative: to the upper.
  */
 #define ACDF_WALK_SHARES 12u

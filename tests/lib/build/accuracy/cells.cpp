@@ -1,9 +1,11 @@
 // for_each_cell: the cells of any tree partition its grid.
 #include "tests/lib/build/accuracy/random_cascade.h"
+#include "tests/lib/curves/open.h"
 
 #include "build/accuracy/cells.h"
 #include "compress/store/store.h"
 
+#include <acdf/curves/curves.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +22,7 @@ TEST(Cells, PartitionTheGrid) {
             compress::store(compress::encode_tree(acdf_test::RandomCascade(seed, 0.0, 4).make(kColumns, kRows)),
                             compress::environment_description(kColumns, kRows));
         File file;
-        ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
+        ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
         std::vector<int> covered(kColumns * kRows, 0);
         double sum = 0.0;
         build::for_each_cell(file, file.bin(0).root, [&](const build::Cell& cell) {
@@ -31,9 +33,10 @@ TEST(Cells, PartitionTheGrid) {
                     ++covered[r * kColumns + c];
                     // The reader finds the same cell there.
                     const std::uint32_t square[2] = {c, r};
-                    AcdfRange found[2] = {{0, kColumns, 0.0}, {0, kRows, 0.0}};
-                    EXPECT_EQ(acdf_tree_find(file.tree(), file.bin(0).root, square, found, nullptr),
-                              cell.probability);
+                    AcdfTiltedRange found[2] = {acdf_whole_axis(kColumns), acdf_whole_axis(kRows)};
+                    EXPECT_EQ(
+                        acdf_tree_find(acdf_test::TreeOf(file).data, file.bin(0).root, square, found, nullptr),
+                        cell.probability);
                     for (int axis = 0; axis < 2; ++axis) {
                         EXPECT_EQ(found[axis].low, cell.range[axis].low);
                         EXPECT_EQ(found[axis].high, cell.range[axis].high);
@@ -50,7 +53,7 @@ TEST(Cells, ThoseOfProbabilityZeroAreVisitedToo) {
     const compress::Cascade cascade{{{1, {1, 2}, {0.5, 0.0, 0.5}, {}, {}}}, {0}};
     const auto bytes = compress::store(compress::encode_tree(cascade), compress::environment_description(4, 3));
     File file;
-    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
+    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
     std::vector<double> probability;
     build::for_each_cell(file, file.bin(0).root,
                          [&](const build::Cell& cell) { probability.push_back(cell.probability); });

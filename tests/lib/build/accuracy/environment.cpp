@@ -5,6 +5,7 @@
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
 
+#include <acdf/curves/curves.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -61,7 +62,7 @@ public:
     Stored(const compress::Cascade& cascade, std::uint32_t columns, std::uint32_t rows)
         : bytes_(
               compress::store(compress::encode_tree(cascade), compress::environment_description(columns, rows))) {
-        const Status status = File::from_memory(bytes_.data(), bytes_.size(), file_);
+        const Status status = File::from_memory(bytes_.data(), bytes_.size(), file_, acdf::with_curves());
         if (!status.ok()) throw std::runtime_error(status.message);
     }
     const File& file() const { return file_; }

@@ -4,6 +4,7 @@
 
 #include "input/sha256.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/renderers.h>
 
 #include <algorithm>
@@ -205,7 +206,7 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryFit) {
         const Bytes made = bytes_of(pixels_of(rgb), options);
         EXPECT_EQ(made, program_bytes(arguments, folder / "p.acdf")) << text;
         File file;
-        ASSERT_TRUE(File::from_memory(made.data(), made.size(), file).ok());
+        ASSERT_TRUE(File::from_memory(made.data(), made.size(), file, acdf::with_curves()).ok());
         const Text told = file.metadata("fit.options");
         EXPECT_EQ(std::string(told.data, told.size), option_text(options));
     };
@@ -282,7 +283,7 @@ TEST(Builder, OneTargetMakesManyFiles) {
 TEST(Builder, FilesAreReadInPlace) {
     const Bytes made = bytes_of(pixels_of(sky()), cells(200));
     File file;
-    ASSERT_TRUE(File::from_memory(made.data(), made.size(), file).ok());
+    ASSERT_TRUE(File::from_memory(made.data(), made.size(), file, acdf::with_curves()).ok());
     EXPECT_EQ(static_cast<const void*>(&file.header()), made.data());
     EXPECT_GT(file.environment().sample(0.3, 0.4).pdf, 0.0f);
 }

@@ -6,6 +6,7 @@
 #include "input/brdf/models.h"
 #include "input/sha256.h"
 
+#include <acdf/curves/curves.h>
 #include <algorithm>
 #include <atomic>
 
@@ -48,7 +49,7 @@ Bytes local_bytes(const SkyFile& sky_file, LocalOptions options) {
         EXPECT_EQ(made.accuracy.support_violations, 0u);
     }
     File file;
-    EXPECT_TRUE(File::from_memory(made.bytes.data(), made.bytes.size(), file).ok());
+    EXPECT_TRUE(File::from_memory(made.bytes.data(), made.bytes.size(), file, acdf::with_curves()).ok());
     const Text told = file.metadata("fit.options");
     EXPECT_EQ(std::string(told.data, told.size), option_text(options));
     return made.bytes;
@@ -84,7 +85,7 @@ TEST(BuilderLocal, NormalsOfAScene) {
     options.normals_text = "--scene " + input::file_sha256(file.file("normals.txt"));
     const Bytes made = local_bytes(file, options);
     File read;
-    ASSERT_TRUE(File::from_memory(made.data(), made.size(), read).ok());
+    ASSERT_TRUE(File::from_memory(made.data(), made.size(), read, acdf::with_curves()).ok());
     const float up[3] = {0.0f, 0.0f, 1.0f}, down[3] = {0.0f, 0.0f, -1.0f};
     EXPECT_TRUE(read.local().stored(up));
     EXPECT_FALSE(read.local().stored(down));
@@ -93,7 +94,7 @@ TEST(BuilderLocal, NormalsOfAScene) {
     EXPECT_NE(local_bytes(file, options), made); // but weights do
     const Bytes program = file.program({"--budget", "32KiB", "--scene", file.file("normals.txt")});
     File by_program;
-    ASSERT_TRUE(File::from_memory(program.data(), program.size(), by_program).ok());
+    ASSERT_TRUE(File::from_memory(program.data(), program.size(), by_program, acdf::with_curves()).ok());
     EXPECT_EQ(by_program.metadata("fit.options").size, read.metadata("fit.options").size);
     EXPECT_TRUE(by_program.local().stored(up));
     EXPECT_FALSE(by_program.local().stored(down));

@@ -6,6 +6,7 @@
 #include "build/accuracy/environment.h"
 #include "build/builder/sources.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/rebuild_c.h>
 
 #include <new>
@@ -118,7 +119,7 @@ TEST(Rebuild, IsAsGoodAsWhatIsBuilt) {
         Target target;
         require(Target::from(pixels_of(of, rgb), options_of(of, budget).target, target));
         File file;
-        ASSERT_TRUE(File::from_memory(fast.data(), fast.size(), file).ok());
+        ASSERT_TRUE(File::from_memory(fast.data(), fast.size(), file, acdf::with_curves()).ok());
         const EnvironmentAccuracy accuracy = build::measure_environment(file, target.data()->grid);
         EXPECT_EQ(accuracy.support_violations, 0u);
         EXPECT_NEAR(fast.relative_variance(), accuracy.relative_variance, 1e-4 + 1e-3 * accuracy.relative_variance);
@@ -163,7 +164,7 @@ TEST(Rebuild, ViewsAreThoseOfTheFile) {
     require(sky.rebuild(pixels_of(of, rgb), one_thread()));
     const Bytes bytes = bytes_of(sky);
     File file;
-    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
+    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
     EXPECT_EQ(file.environment().total(), sky.view().total());
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> unit;

@@ -6,6 +6,7 @@
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
 
+#include <acdf/curves/curves.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -129,7 +130,7 @@ TEST(Fit, ConstantTargetIsOneCell) { // the furnace
             EXPECT_EQ(acdf_test::cells_of(cascade, t).size(), 1u);
             const auto bytes = store(encode_tree(cascade), environment_description(50, 25));
             acdf::File file;
-            ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+            ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
             const auto accuracy = acdf::build::measure_environment(file, t);
             EXPECT_NEAR(accuracy.relative_variance, 0.0, 1e-14);
             EXPECT_NEAR(accuracy.rms_pdf_error, 0.0, 1e-14);

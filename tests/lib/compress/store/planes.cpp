@@ -1,10 +1,12 @@
 // tree_to_planes: what the reader puts together again is the tree, byte for byte.
 #include "tests/inputs/synthetic.h"
+#include "tests/lib/curves/open.h"
 
 #include "compress/fit/fit.h"
 #include "compress/store/planes.h"
 #include "compress/store/store.h"
 
+#include <acdf/curves/curves.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
 
@@ -32,11 +34,11 @@ std::size_t expect_the_same(const EncodedTree& tree, std::uint32_t columns, std:
     const auto bytes = store(tree, environment_description(columns, rows), ACDF_CODEC_ZLIB);
     EXPECT_EQ(codec_of_tree(bytes), std::uint32_t{codec});
     acdf::File file;
-    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
     EXPECT_TRUE(status.ok()) << status.message;
     if (!status.ok()) return 0;
-    EXPECT_EQ(2 * std::size_t{file.tree_units()}, tree.bytes.size());
-    EXPECT_EQ(std::memcmp(file.tree(), tree.bytes.data(), tree.bytes.size()), 0);
+    EXPECT_EQ(2 * std::size_t{acdf_test::TreeOf(file).units}, tree.bytes.size());
+    EXPECT_EQ(std::memcmp(acdf_test::TreeOf(file).data, tree.bytes.data(), tree.bytes.size()), 0);
     return bytes.size();
 }
 

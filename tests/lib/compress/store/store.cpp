@@ -5,6 +5,7 @@
 #include "build/accuracy/cells.h"
 #include "compress/store/store.h"
 
+#include <acdf/curves/curves.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -23,7 +24,8 @@ Stored stored(const Cascade& cascade, std::uint32_t columns, std::uint32_t rows,
               AcdfCodec codec = ACDF_CODEC_NONE) {
     Stored s;
     s.bytes = store(encode_tree(cascade, 0.0), environment_description(columns, rows), codec);
-    const acdf::Status status = acdf::File::from_memory(s.bytes.data(), s.bytes.size(), s.file);
+    const acdf::Status status =
+        acdf::File::from_memory(s.bytes.data(), s.bytes.size(), s.file, acdf::with_curves());
     EXPECT_TRUE(status.ok()) << status.message;
     return s;
 }
@@ -111,7 +113,7 @@ void expect_positions(const std::vector<std::uint32_t>& knots, std::uint32_t cod
         EXPECT_EQ(read.cumulative_code(), width);
         EXPECT_EQ(read.end, tree.bytes.size());
         for (std::uint32_t i = 0; i < knots.size(); ++i) {
-            AcdfRange range = {0, 0xFFFFFFFF, 0.0};
+            AcdfTiltedRange range = {0, 0xFFFFFFFF, 0.0};
             acdf_curve_narrow(&read.curve, i, &range);
             EXPECT_EQ(range.high, knots[i]);
             EXPECT_EQ(range.low, i == 0 ? 0 : knots[i - 1]);
@@ -265,7 +267,7 @@ TEST(Store, DescribesTheFile) {
         const auto bytes = store(encode_tree({{{0, {}, {1.0}, {}, {}}}, {0}}), d, codec);
         EXPECT_EQ(bytes.size() % ACDF_ALIGNMENT, 0u);
         acdf::File file;
-        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves());
         ASSERT_TRUE(status.ok()) << status.message;
         EXPECT_EQ(file.kind(), ACDF_KIND_ENVIRONMENT);
         EXPECT_EQ(file.size(), bytes.size());

@@ -8,6 +8,8 @@
 #include "measure/samplers/light_samplers.h"
 #include "measure/surface_frame.h"
 
+#include <acdf/curves/curves.h>
+
 namespace {
 
 using namespace acdf::measure;
@@ -61,7 +63,7 @@ TEST(FileSamplers, EnvironmentAndLocalFilesSampleByTheirPdf) {
     const std::vector<std::uint8_t> bytes =
         acdf::compress::store(acdf::compress::fit_halvings(t, fit), description);
     acdf::File environment;
-    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), environment).ok());
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), environment, acdf::with_curves()).ok());
 
     const LightSamplerPtr everywhere = file_sampler(environment), local = file_sampler(map.file);
     EXPECT_EQ(everywhere->bytes(), bytes.size() + environment.table_bytes());
@@ -71,7 +73,7 @@ TEST(FileSamplers, EnvironmentAndLocalFilesSampleByTheirPdf) {
     const std::vector<std::uint8_t> packed =
         acdf::compress::store(acdf::compress::fit_halvings(t, fit), description, ACDF_CODEC_ZLIB);
     acdf::File inflated;
-    ASSERT_TRUE(acdf::File::from_memory(packed.data(), packed.size(), inflated).ok());
+    ASSERT_TRUE(acdf::File::from_memory(packed.data(), packed.size(), inflated, acdf::with_curves()).ok());
     EXPECT_LT(packed.size(), bytes.size());
     EXPECT_GT(memory_of(inflated), packed.size() + inflated.table_bytes() + bytes.size() / 2);
     for (const ShadingPoint& point : some_points()) {

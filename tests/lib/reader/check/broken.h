@@ -1,9 +1,9 @@
 // The complete file with one thing changed: what breaks a rule.
 #pragma once
 
+#include "tests/lib/curves/planes.h"
 #include "tests/lib/reader/action.h"
 #include "tests/lib/reader/files.h"
-#include "tests/lib/reader/planes.h"
 
 #include <acdf/reader.h>
 #include <acdf/views.h>

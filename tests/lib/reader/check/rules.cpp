@@ -140,8 +140,8 @@ TEST(Validate, reportsAllFindings) {
     const Findings found = findings(file);
     EXPECT_EQ(found.rules, (std::multiset<int>{2007, 2007, 4002, 5010, 6011, 6013})) << found.text;
     int calls = 0;
-    const acdf::Verdict verdict =
-        acdf::validate(file.data(), file.size(), [&](const acdf::Finding&) { return ++calls < 3; });
+    const acdf::Verdict verdict = acdf::validate(
+        file.data(), file.size(), [&](const acdf::Finding&) { return ++calls < 3; }, acdf::with_curves());
     EXPECT_EQ(calls, 3);
     EXPECT_EQ(verdict.errors, 3u);
     EXPECT_FALSE(verdict.valid());

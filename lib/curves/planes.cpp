@@ -1,9 +1,8 @@
-// Puts a tree together from its planes.
-#include "planes.h"
-
+// Codec 2 of format/SPEC.md §7.4: a tree taken apart into planes, which deflate better.
+#include "curves/functions.h"
 #include "inflate.h"
 
-#include <acdf/tree.h>
+#include <acdf/curves/tree.h>
 
 #include <cstdlib>
 #include <cstring>
@@ -154,23 +153,26 @@ private:
     u32 open_count_ = 0;
 };
 
-} // namespace
-
-bool planes_to_tree(const u8* planes, u64 size, u8* tree, u64 tree_size) noexcept {
+/// Puts the tree of `tree_size` bytes at `tree` (aligned to 4) together from `size` bytes of planes. False where
+/// they are not the planes of a tree of that size; `tree` then holds anything. Whether the tree itself keeps the
+/// rules is for others to check. Reads and writes nothing else, allocates nothing; linear in both sizes.
+bool planes_to_tree(const u8* planes, u64 size, u8* tree, u64 tree_size) {
     Decoder decoder(tree, tree_size);
     return decoder.open_streams(planes, size) && decoder.run();
 }
 
-const char no_memory_for_planes[] = "there is no memory for them";
+} // namespace
 
-const char* inflate_planes(const u8* in, u64 in_size, u8* tree, u64 tree_size) noexcept {
+int inflate_planes(const u8* bytes, u64 bytes_size, u8* tree, u64 tree_size, const char** wrong) {
     u64 size = 2 * tree_size + sizeof(AcdfPlanes); // more than those of any tree
     auto* planes = static_cast<u8*>(std::malloc(size));
-    if (!planes) return no_memory_for_planes;
-    const char* wrong = inflate_within(in, in_size, planes, size);
-    if (!wrong && !planes_to_tree(planes, size, tree, tree_size)) wrong = "they are not those of such a tree";
+    *wrong = "no memory for its planes";
+    if (!planes) return 1003;
+    *wrong = inflate_within(bytes, bytes_size, planes, size);
+    if (!*wrong && !planes_to_tree(planes, size, tree, tree_size))
+        *wrong = "its planes are not those of such a tree";
     std::free(planes);
-    return wrong;
+    return *wrong ? 4005 : 0;
 }
 
 } // namespace acdf

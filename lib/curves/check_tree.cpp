@@ -1,8 +1,9 @@
 // The distribution itself: BINS and TREE. Linear in their bytes: the curves are visited in file order, which
 // comes after every path that leads to them because links only go forward.
+#include "curves/check_tree.h"
 #include "check/kinds.h"
 
-#include <acdf/sample.h>
+#include <acdf/curves/tree.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -102,17 +103,17 @@ bool find_curves(const Tree& tree, u32& curves, Report& report) {
     for (u32 unit = 0; unit < units;) {
         const u64 at = payload.at(u64{unit} * 2);
         if (++curves > units / 2 + 1) {
-            report.add(6018, at, "the curve at unit %u is number %u, TREE has %llu bytes", unit, curves,
-                       static_cast<ull>(payload.size));
+            report.add(6018, at, "the curve at unit %u is number %u: too many for a TREE of %llu bytes", unit,
+                       curves, static_cast<ull>(payload.size));
             return false;
         }
         const u32 header = tree.unit(unit);
         if (ACDF_CURVE_CUMULATIVE_CODE(header) > 2 || ACDF_CURVE_POSITION_CODE(header) > 2) {
-            report.add(6004, at, "the header of the curve at unit %u is %04x", unit, header);
+            report.add(6004, at, "the header of the curve at unit %u is %04x, with unknown sizes", unit, header);
             return false;
         }
         if (segments_of(tree, unit) == 0) {
-            report.add(6005, at, "the curve at unit %u", unit);
+            report.add(6005, at, "the curve at unit %u has no legal number of segments", unit);
             return false;
         }
         AcdfCurve curve;
@@ -142,7 +143,7 @@ void count_before(u32 units, const Starts& starts) {
 // Padding lies between an array's end and the next one's start.
 void check_zero(const Tree& tree, u32 unit, const u8* begin, const u8* end, Report& report) {
     for (const u8* p = begin; p < end; ++p)
-        if (*p != 0) report.add(6011, tree.at(p), "the curve at unit %u: it is %02x", unit, *p);
+        if (*p != 0) report.add(6011, tree.at(p), "a byte of padding of the curve at unit %u is %02x", unit, *p);
 }
 
 void check_padding(const Tree& tree, u32 unit, const AcdfCurve& curve, Report& report) {
@@ -162,7 +163,8 @@ void check_padding(const Tree& tree, u32 unit, const AcdfCurve& curve, Report& r
 
 void check_values(const Tree& tree, u32 unit, const AcdfCurve& curve, Report& report) {
     const u32 axis = acdf_curve_axis(&curve);
-    if (!tree.sampled(axis)) report.add(6003, tree.at(unit), "the curve at unit %u is on axis %u", unit, axis);
+    if (!tree.sampled(axis))
+        report.add(6003, tree.at(unit), "the curve at unit %u is on axis %u, which is not sampled", unit, axis);
     check_padding(tree, unit, curve, report);
     const u32 position_code = ACDF_CURVE_POSITION_CODE(curve.header);
     u32 previous = 0, before = 0;
@@ -170,8 +172,8 @@ void check_values(const Tree& tree, u32 unit, const AcdfCurve& curve, Report& re
         const u32 cumulative = acdf_curve_cumulative(&curve, i + 1);
         const u32 position = acdf_load(curve.positions, i, position_code);
         if (i > 0 && position <= before) {
-            report.add(6006, tree.at(curve.positions), "the curve at unit %u: knot %u is at %u", unit, i + 1,
-                       position);
+            report.add(6006, tree.at(curve.positions), "the curve at unit %u: knot %u is at %u, not above the last",
+                       unit, i + 1, position);
             break;
         }
         if (cumulative < previous) {
@@ -207,18 +209,21 @@ void check_segments(const Tree& tree, u32 unit, const AcdfCurve& curve, Report& 
     const u32 tilted = tree.mark(unit).b >> 16;
     const u32 axis = acdf_curve_axis(&curve);
     const u32 link_size = curve.links ? acdf_element_size(ACDF_CURVE_LINK_CODE(curve.header) - 1) : 0;
-    if (tilted >> axis & 1) report.add(6014, tree.at(unit), "the curve at unit %u is on axis %u", unit, axis);
+    if (tilted >> axis & 1)
+        report.add(6014, tree.at(unit), "the curve at unit %u is on axis %u, which is tilted above", unit, axis);
     for (u32 i = 0; i < curve.segments; ++i) {
         const Segment s = segment_of(curve, i);
         if (s.tilt == -32768)
-            report.add(6013, tree.at(curve.tilts + 2 * u64{i}), "the curve at unit %u, segment %u", unit, i);
+            report.add(6013, tree.at(curve.tilts + 2 * u64{i}), "the curve at unit %u, segment %u, has tilt -32768",
+                       unit, i);
         if (s.link == 0) continue;
         const u64 at = tree.at(curve.links + u64{i} * link_size);
         const u64 target = u64{unit} + s.link;
-        if (s.probability == 0) report.add(6015, at, "the curve at unit %u, segment %u, has a child", unit, i);
+        if (s.probability == 0)
+            report.add(6015, at, "the curve at unit %u, segment %u, is of probability 0 and has a child", unit, i);
         if (!tree.starts_at(target)) {
-            report.add(6009, at, "the curve at unit %u, segment %u, links to unit %llu", unit, i,
-                       static_cast<ull>(target));
+            report.add(6009, at, "the curve at unit %u, segment %u, links to unit %llu, where no curve starts",
+                       unit, i, static_cast<ull>(target));
             continue;
         }
         if (depth > 0)
@@ -231,8 +236,10 @@ void check_segments(const Tree& tree, u32 unit, const AcdfCurve& curve, Report& 
 void check_reach(const Tree& tree, u32 unit, Report& report) {
     u32& b = tree.mark(unit).b;
     const u32 depth = b & 0xFFFF;
-    if (depth == 0 && report.verdict().errors == 0) report.add(6012, tree.at(unit), "the curve at unit %u", unit);
-    if (depth == ACDF_MAX_DEPTH + 1) report.add(6016, tree.at(unit), "the curve at unit %u is the 65th", unit);
+    if (depth == 0 && report.verdict().errors == 0)
+        report.add(6012, tree.at(unit), "no root leads to the curve at unit %u", unit);
+    if (depth == ACDF_MAX_DEPTH + 1)
+        report.add(6016, tree.at(unit), "the curve at unit %u is the 65th of a path", unit);
     if (depth > ACDF_MAX_DEPTH + 1) b = (b & 0xFFFF0000u) | (ACDF_MAX_DEPTH + 2);
 }
 
@@ -269,7 +276,8 @@ void narrow(Mark& child, u32 low, u32 high) {
 bool knots_are_inside(const Tree& tree, u32 unit, const AcdfCurve& curve, const Mark& inherited, Report& report) {
     const u32 code = ACDF_CURVE_POSITION_CODE(curve.header), low = inherited.a & ~disagree;
     if (code == 0 && inherited.a & disagree) {
-        report.add(6019, tree.at(unit), "the curve at unit %u: its range begins at %u, or lower", unit, low);
+        report.add(6019, tree.at(unit),
+                   "the curve at unit %u has knots of one byte, and its range begins at %u, or lower", unit, low);
         return false;
     }
     const u32 origin = code == 0 ? low : 0; // the sum is below 2^31 + 256
@@ -289,7 +297,7 @@ void check_knots(const Tree& tree, u32 unit, const AcdfCurve& curve, u32 axis, R
     for (u32 i = 0; i < curve.segments; ++i) {
         const u32 link = acdf_curve_link(&curve, i);
         if (link == 0) continue;
-        AcdfRange range = {inherited.a & ~disagree, inherited.b, 0.0};
+        AcdfTiltedRange range = {inherited.a & ~disagree, inherited.b, 0.0};
         if (splits) acdf_curve_narrow(&curve, i, &range);
         const bool own_low = splits && i > 0; // the same on every path
         narrow(tree.mark(unit + link), own_low ? range.low : inherited.a, range.high);
@@ -310,7 +318,8 @@ void check_ranges(const Tree& tree, u32 curves, u32 axis, Report& report) {
 void check_roots(const Tree& tree, Report& report) {
     for_each_root(tree, [&](u32 root, u32 bin) {
         if (!tree.starts_at(root))
-            report.add(6010, tree.bins.at(u64{bin} * sizeof(AcdfBin)), "bin %u: unit %u", bin, root);
+            report.add(6010, tree.bins.at(u64{bin} * sizeof(AcdfBin)),
+                       "bin %u: no curve starts at its root, unit %u", bin, root);
     });
 }
 
@@ -329,7 +338,7 @@ void check_found_curves(Tree& tree, Report& report) {
     count_before(tree.units, tree.starts);
     tree.marks = static_cast<Mark*>(std::calloc(curves, sizeof(Mark)));
     if (tree.marks) check_marked_tree(tree, curves, report);
-    else report.add(1003, tree.at(u32{0}), "%u curves to check", curves);
+    else report.add(1003, tree.at(u32{0}), "no memory to check %u curves", curves);
     std::free(tree.marks);
 }
 
@@ -340,18 +349,16 @@ void check_tree(const Payload& bins, const Payload& payload, u32 kind, Report& r
     if (!payload.data || report.stopped()) return;
     const u64 units = payload.size / 2;
     if (payload.size == 0 || payload.size % 2 != 0 || units > 0xFFFFFFFE) {
-        report.add(6001, payload.at(0), "it has %llu bytes", static_cast<ull>(payload.size));
+        report.add(6001, payload.at(0), "TREE has %llu bytes", static_cast<ull>(payload.size));
         return;
     }
     if (!parts.bins || parts.description->bin_count == 0) return;
-    parts.tree = payload.data;
-    parts.tree_units = static_cast<u32>(units);
     const u64 runs = units / 64 + 1;
-    Tree tree{payload, bins, parts, kind, parts.tree_units};
+    Tree tree{payload, bins, parts, kind, static_cast<u32>(units)};
     tree.starts = {static_cast<u64*>(std::calloc(runs, sizeof(u64))),
                    static_cast<u32*>(std::calloc(runs, sizeof(u32)))};
     if (tree.starts.bits && tree.starts.before) check_found_curves(tree, report);
-    else report.add(1003, payload.at(0), "%llu units of a tree to check", static_cast<ull>(units));
+    else report.add(1003, payload.at(0), "no memory to check %llu units of TREE", static_cast<ull>(units));
     std::free(tree.starts.bits);
     std::free(tree.starts.before);
 }

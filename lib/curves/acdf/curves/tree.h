@@ -1,6 +1,7 @@
-/* Curves and trees of curves (SPEC.md §7): sampling a cell, and finding the one that holds a point. */
-#ifndef ACDF_TREE_H
-#define ACDF_TREE_H
+/* Curves and trees of curves (SPEC.md §7): sampling a cell, and finding the one that holds a point. Valid C99 and
+ * C++17. */
+#ifndef ACDF_CURVES_TREE_H
+#define ACDF_CURVES_TREE_H
 
 #include <acdf/layout.h>
 #include <acdf/range.h>
@@ -9,6 +10,38 @@
 extern "C" {
 #endif
 
+/* The part of one axis that a cell covers, and the slope of the pdf across it. */
+typedef struct AcdfTiltedRange {
+    uint32_t low, high; /* positions on the axis, low < high */
+    double tilt;        /* s: the pdf varies as 1 + s (2t - 1) for t in [0, 1] across the range */
+} AcdfTiltedRange;
+
+/* The same without the slope. */
+ACDF_FN AcdfRange acdf_untilted(const AcdfTiltedRange* tilted) {
+    AcdfRange range;
+    range.low = tilted->low;
+    range.high = tilted->high;
+    return range;
+}
+
+/* All `resolution` steps of an axis. */
+ACDF_FN AcdfTiltedRange acdf_whole_axis(uint32_t resolution) {
+    AcdfTiltedRange range;
+    range.low = 0;
+    range.high = resolution;
+    range.tilt = 0.0;
+    return range;
+}
+
+/* Where in [0, 1] a tilted pdf puts u: solves t + s (t^2 - t) = u without cancellation. */
+ACDF_FN double acdf_tilt_sample(double tilt, double u) {
+    const double a = 1.0 - tilt;
+    return tilt == 0.0 ? u : 2.0 * u / (a + sqrt(a * a + 4.0 * tilt * u));
+}
+ACDF_FN double acdf_tilt_cdf(double tilt, double t) { return t + tilt * (t * t - t); }
+ACDF_FN double acdf_tilt_pdf(double tilt, double t) { return 1.0 + tilt * (2.0 * t - 1.0); }
+
+/* One curve where it lies in its tree. */
 typedef struct AcdfCurve {
     uint32_t header;
     uint32_t segments;
@@ -18,6 +51,7 @@ typedef struct AcdfCurve {
     const uint8_t* tilts;
 } AcdfCurve;
 
+/* The axis that it divides. */
 ACDF_FN uint32_t acdf_curve_axis(const AcdfCurve* curve) { return curve->header & ACDF_CURVE_AXIS_MASK; }
 
 /* Bytes of an element whose size code is `code`: 1, 2 or 4. */
@@ -64,20 +98,22 @@ ACDF_FN size_t acdf_curve_decode(const uint8_t* tree, uint32_t at, AcdfCurve* cu
     return offset / 2;
 }
 
+/* The curve at offset `at`. */
 ACDF_FN AcdfCurve acdf_curve_at(const uint8_t* tree, uint32_t at) {
     AcdfCurve curve;
     acdf_curve_decode(tree, at, &curve);
     return curve;
 }
 
+/* Element `index` of an array whose size code is `code`. */
 ACDF_FN uint32_t acdf_load(const uint8_t* array, uint32_t index, uint32_t code) {
     if (code == 0) return array[index];
     return code == 1 ? ((const uint16_t*)(const void*)array)[index] : ((const uint32_t*)(const void*)array)[index];
 }
 
-/* How many of `count` nondecreasing values are <= key. Long arrays are halved without branches on the data; few
- * values are passed one by one, since a branch that is guessed lets the loads of the child start before the
- * comparison is done: most curves are short, and their time is that of loads that wait for each other. */
+/* How many of `count` nondecreasing values are <= key. Long arrays are halved without branches on the data. Few
+ * values are passed one by one: a branch that is guessed lets the loads of the child start before the comparison is
+ * done. Most curves are short, and their time is that of loads that wait for each other. */
 #define ACDF_UPPER_BOUND(name, type)                                                                               \
     ACDF_FN uint32_t name(const type* array, uint32_t count, uint32_t key) {                                       \
         uint32_t base = 0, end;                                                                                    \
@@ -114,7 +150,7 @@ ACDF_FN uint32_t acdf_curve_cumulative(const AcdfCurve* curve, uint32_t i) {
 }
 
 /* Narrows the range of the curve's axis to segment i. Positions of one byte count from the range's low end. */
-ACDF_FN void acdf_curve_narrow(const AcdfCurve* curve, uint32_t i, AcdfRange* range) {
+ACDF_FN void acdf_curve_narrow(const AcdfCurve* curve, uint32_t i, AcdfTiltedRange* range) {
     const uint32_t code = ACDF_CURVE_POSITION_CODE(curve->header);
     const uint32_t origin = code == 0 ? range->low : 0;
     if (i > 0) range->low = origin + acdf_load(curve->positions, i - 1, code);
@@ -123,7 +159,7 @@ ACDF_FN void acdf_curve_narrow(const AcdfCurve* curve, uint32_t i, AcdfRange* ra
 }
 
 /* Which segment holds a grid step of the curve's axis. */
-ACDF_FN uint32_t acdf_curve_segment(const AcdfCurve* curve, uint32_t step, const AcdfRange* range) {
+ACDF_FN uint32_t acdf_curve_segment(const AcdfCurve* curve, uint32_t step, const AcdfTiltedRange* range) {
     const uint32_t code = ACDF_CURVE_POSITION_CODE(curve->header);
     return acdf_upper_bound(curve->positions, curve->segments - 1, code, code == 0 ? step - range->low : step);
 }
@@ -133,12 +169,9 @@ ACDF_FN uint32_t acdf_curve_link(const AcdfCurve* curve, uint32_t i) {
     return curve->links ? acdf_load(curve->links, i, ACDF_CURVE_LINK_CODE(curve->header) - 1) : 0;
 }
 
-/* A product of 64 probabilities may underflow; what can be sampled keeps a positive one. */
-ACDF_FN double acdf_positive(double probability) { return probability > 0x1p-1000 ? probability : 0x1p-1000; }
-
 /* Samples a segment of a curve, as acdf_tree_sample does on its way. Returns the distance to its child, 0 where it
  * ends. */
-ACDF_FN uint32_t acdf_curve_sample(const uint8_t* tree, uint32_t at, double* u, AcdfRange* range,
+ACDF_FN uint32_t acdf_curve_sample(const uint8_t* tree, uint32_t at, double* u, AcdfTiltedRange* range,
                                    double* probability) {
     const AcdfCurve curve = acdf_curve_at(tree, at);
     const uint32_t axis = acdf_curve_axis(&curve);
@@ -160,7 +193,7 @@ ACDF_FN uint32_t acdf_curve_sample(const uint8_t* tree, uint32_t at, double* u, 
 /* Samples a cell. In: u[axis] in [0, 1] and range[axis] = the whole axis with tilt 0, for each sampled axis.
  * Out: u[axis] in [0, 1] is what is left of the random number, uniform within the cell; range[axis] is the
  * cell. Returns the cell's probability, > 0. */
-ACDF_FN double acdf_tree_sample(const uint8_t* tree, uint32_t root, double* u, AcdfRange* range) {
+ACDF_FN double acdf_tree_sample(const uint8_t* tree, uint32_t root, double* u, AcdfTiltedRange* range) {
     double probability = 1.0;
     uint32_t link;
     do {
@@ -172,7 +205,7 @@ ACDF_FN double acdf_tree_sample(const uint8_t* tree, uint32_t root, double* u, A
 
 /* Finds the segment that holds a grid square, as acdf_tree_find does on its way. Returns the distance to its child,
  * 0 where it ends or has no probability. */
-ACDF_FN uint32_t acdf_curve_find(const uint8_t* tree, uint32_t at, const uint32_t* square, AcdfRange* range,
+ACDF_FN uint32_t acdf_curve_find(const uint8_t* tree, uint32_t at, const uint32_t* square, AcdfTiltedRange* range,
                                  AcdfStratum* strata, double* probability) {
     const AcdfCurve curve = acdf_curve_at(tree, at);
     const uint32_t axis = acdf_curve_axis(&curve);
@@ -192,7 +225,7 @@ ACDF_FN uint32_t acdf_curve_find(const uint8_t* tree, uint32_t at, const uint32_
 /* Finds the cell that holds the unit grid square at[axis], at[axis] in [0, resolution). `range` as in
  * acdf_tree_sample; `strata` may be null, else strata[axis] = {0, 1} becomes the random numbers that lead
  * here. Returns the cell's probability, 0 where no sample can fall. */
-ACDF_FN double acdf_tree_find(const uint8_t* tree, uint32_t root, const uint32_t* square, AcdfRange* range,
+ACDF_FN double acdf_tree_find(const uint8_t* tree, uint32_t root, const uint32_t* square, AcdfTiltedRange* range,
                               AcdfStratum* strata) {
     double probability = 1.0;
     uint32_t link;

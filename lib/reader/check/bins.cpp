@@ -1,4 +1,4 @@
-// What kinds ask of files that have curves.
+// Chunk BINS.
 #include "check/kinds.h"
 
 #include <cmath>
@@ -27,15 +27,6 @@ void check_bin_count(const Payload& payload, int rule, u64 bins, Report& report,
     if (bins != parts.description->bin_count)
         report.add(rule, payload.at(offsetof(AcdfDescription, bin_count)), "%u bins, but the axes make %llu",
                    parts.description->bin_count, static_cast<ull>(bins));
-}
-
-void check_kind(const Payloads& payloads, std::uint32_t kind, Report& report, Parts& parts) noexcept {
-    const Payload &description = payloads.of[chunk_description], &bins = payloads.of[chunk_bins];
-    check_tree(bins, payloads.of[chunk_tree], kind, report, parts);
-    if (report.stopped()) return;
-    if (kind == ACDF_KIND_ENVIRONMENT) check_environment(description, bins, report, parts);
-    if (kind == ACDF_KIND_LOCAL) check_local_kind(description, payloads.of[chunk_local], report, parts);
-    if (kind == ACDF_KIND_BRDF) check_brdf_kind(payloads, report, parts);
 }
 
 } // namespace acdf
