@@ -96,7 +96,7 @@ int acdf_table(const AcdfFile* file, AcdfTable* out);
 int acdf_indexed(const AcdfFile* file, AcdfIndexed* out);
 
 /* The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how many
- * there are (acdf/moved.h); 0 of a file of curves, whose views cannot be moved. */
+ * there are (acdf/moved.h). */
 int acdf_memory(const AcdfFile* file, AcdfMove* moves);
 #endif
 

@@ -148,7 +148,7 @@ public:
     /// The view of an environment of several maps: only where kind() == ACDF_KIND_INDEXED.
     IndexedEnvironment indexed() const noexcept;
     /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
-    /// many there are (acdf/moved.h); 0 of a file of curves, whose views cannot be moved.
+    /// many there are (acdf/moved.h).
     int memory(AcdfMove* moves) const noexcept;
 #endif
 
