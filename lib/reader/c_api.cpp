@@ -30,7 +30,6 @@ int acdf_table(const AcdfFile* file, AcdfTable* out) {
 
 int acdf_memory(const AcdfFile* file, AcdfMove* moves) {
     int count = 0;
-    if (file->curves()) return 0;
     moves[count++] = {file->bytes, static_cast<size_t>(file->size), nullptr};
     for (int i = 1; i < ACDF_MAX_MOVES; ++i)
         if (file->memory[i].data) moves[count++] = {file->memory[i].data, file->memory[i].bytes, nullptr};

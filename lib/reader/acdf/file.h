@@ -77,7 +77,7 @@ int acdf_brdf(const AcdfFile* file, struct AcdfBrdf* out);
 int acdf_table(const AcdfFile* file, struct AcdfTable* out);
 
 /* The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how many
- * there are (acdf/moved.h); 0 of a file of curves, whose views cannot be moved. */
+ * there are (acdf/moved.h). */
 int acdf_memory(const AcdfFile* file, struct AcdfMove* moves);
 
 /* What a file says of itself, and its parts as they lie in it: valid until it is closed. `file` is not null. */

@@ -6,7 +6,7 @@
  *   for (i = 0; i < count; ++i) moves[i].to = ...;    // a copy of moves[i].bytes bytes at moves[i].from
  *   acdf_move_environment(&sky, moves, count);        // `sky` now is for where the copies are
  *
- * Files of curves (acdf/curves_interface.h) have none: their views become null.
+ * Views of curves cannot be moved, for functions are not copied: they become empty.
  * Copies are aligned to 64 bytes, and are followed by up to 3 bytes that may be read, of any value. Nothing is read
  * or written here but the view. Pointers that are null stay null; others all point into a file's memory. */
 #ifndef ACDF_MOVED_H
@@ -44,6 +44,7 @@ static inline const void* acdf_moved(const void* pointer, const AcdfMove* moves,
 
 /* Points a view into the copies, of which there are `count`. */
 static inline void acdf_move_environment(AcdfEnvironment* environment, const AcdfMove* moves, int count) {
+    if (environment->curves) environment->columns = 0;
     environment->curves = 0;
     environment->tree = 0;
     ACDF_MOVE(AcdfHalvedTree, environment->halved);
@@ -60,6 +61,7 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
 
 /* The same of a BRDF. */
 static inline void acdf_move_brdf(AcdfBrdf* brdf, const AcdfMove* moves, int count) {
+    if (brdf->curves) brdf->columns = 0;
     brdf->curves = 0;
     brdf->tree = 0;
     ACDF_MOVE(AcdfHalvedTree, brdf->halved);

@@ -132,7 +132,7 @@ public:
     /// The view of a table file: only where kind() == ACDF_KIND_TABLE.
     TableView table() const noexcept;
     /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
-    /// many there are (acdf/moved.h); 0 of a file of curves, whose views cannot be moved.
+    /// many there are (acdf/moved.h).
     int memory(AcdfMove* moves) const noexcept { return acdf_memory(opened_, moves); }
 
 private:

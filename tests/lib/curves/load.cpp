@@ -95,14 +95,13 @@ TEST(WithCurves, viewsCannotBeMoved) {
         ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file, with_curves()).ok());
         AcdfMove moves[ACDF_MAX_MOVES];
         const int count = file.memory(moves);
-        EXPECT_EQ(count == 0, TreeOf(file).data != nullptr);
-        if (count > 0 || file.kind() != ACDF_KIND_ENVIRONMENT) return;
+        if (!TreeOf(file).data || file.kind() != ACDF_KIND_ENVIRONMENT) return;
         ++curves;
         AcdfEnvironment moved = file.environment().data();
         acdf_move_environment(&moved, moves, count);
         EXPECT_EQ(moved.curves, nullptr);
         EXPECT_EQ(moved.tree, nullptr);
-        EXPECT_EQ(moved.halved, nullptr);
+        EXPECT_TRUE(acdf::EnvironmentView(moved).empty());
     });
     EXPECT_GE(curves, 5);
 }
