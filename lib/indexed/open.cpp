@@ -4,9 +4,6 @@
 #include "reader/memory.h"
 
 #include <acdf/indexed/open.h>
-#include <acdf/indexed/views.h>
-
-#include <cstring>
 
 namespace acdf {
 namespace {
@@ -27,40 +24,31 @@ AcdfIndexed view_of(const AcdfFile& file, const Maps& maps) {
     return out;
 }
 
-// `out` is zero where this fails.
-Status open_maps(const AcdfFile* file, AcdfIndexed& out) noexcept {
-    Status status;
-    Report report(first_error, static_cast<AcdfError*>(&status));
-    out = {};
-    if (!file || file->kind() != ACDF_KIND_INDEXED) {
-        report.add(2006, offsetof(AcdfHeader, kind), "the file holds no environments of several maps");
-        return status;
-    }
+// `out`, which is zero, stays so where this fails.
+void open_maps(const AcdfFile* file, AcdfIndexed& out, AcdfError& error) noexcept {
+    Report report(first_error, &error);
+    if (!file || file->kind() != ACDF_KIND_INDEXED)
+        return report.add(2006, offsetof(AcdfHeader, kind), "the file holds no environments of several maps");
     Parts parts;
     take_parts(*file, parts);
     const Maps maps = check_maps(*file, parts, report);
-    if (!status.ok()) return status;
+    if (error.code != ACDF_OK) return;
     AcdfIndexed view = view_of(*file, maps);
     view.top = make_top(parts, maps, acdf_halved_heights(view.halved), file->allocator, view.tables);
     if (view.top) out = view;
     else
         report.add(1003, 0, "no memory for %u maps of %u splits", maps.header->map_count, maps.header->split_count);
-    return status;
 }
 
 } // namespace
-
-Status IndexedEnvironment::open(const File& file, IndexedEnvironment& out) noexcept {
-    out = IndexedEnvironment();
-    return open_maps(file.get(), out.data_);
-}
-
 } // namespace acdf
 
 int acdf_indexed(const AcdfFile* file, AcdfIndexed* out, AcdfError* error) {
-    const acdf::Status status = acdf::open_maps(file, *out);
-    if (error) *error = status;
-    return status.ok();
+    AcdfError found = {};
+    *out = {};
+    acdf::open_maps(file, *out, found);
+    if (error) *error = found;
+    return found.code == ACDF_OK;
 }
 
 void acdf_indexed_close(AcdfIndexed* maps) {

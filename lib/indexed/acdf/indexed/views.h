@@ -61,7 +61,12 @@ public:
     /// The maps of a file that is not empty: checks them and makes tables, in time linear in the bytes of chunk
     /// MAPS, with memory of the file's allocator (acdf_indexed). `out` is empty where that fails: the file is of
     /// another kind, a rule is broken, or there is no memory.
-    static Status open(const File& file, IndexedEnvironment& out) noexcept;
+    static Status open(const File& file, IndexedEnvironment& out) noexcept {
+        Status status;
+        out = IndexedEnvironment();
+        acdf_indexed(file.get(), &out.data_, &status);
+        return status;
+    }
 
     /// Whether none was opened.
     bool empty() const noexcept { return data_.columns == 0; }
