@@ -3,7 +3,7 @@
 set -euo pipefail
 build=$1 work=$2
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-for component in reader product; do
+for component in reader visibility product; do
     cmake --install "$build" --prefix "$work/prefix" --component $component >/dev/null
 done
 cmake -S "$root/docs/examples/path_tracer" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null

@@ -3,7 +3,6 @@
 #include "reader/opened_file.h"
 #include "visibility/check.h"
 
-#include <acdf/visibility/visibility.h>
 #include <acdf/visibility/visibility_c.h>
 
 namespace acdf {
@@ -40,13 +39,6 @@ Verdict check_visibility(const AcdfFile& file, FindingSink sink, void* context, 
     else if (report.verdict().errors == 0)
         report.add(7016, portals.at(0), "there are portals, but no visibility cells");
     return report.verdict();
-}
-
-Status VisibleLocalView::of(const File& file, VisibleLocalView& view) noexcept {
-    Status status;
-    view = VisibleLocalView();
-    if (!acdf_visible_local(file.get(), &view.data_, &status)) view = VisibleLocalView();
-    return status;
 }
 
 } // namespace acdf

@@ -9,6 +9,7 @@
 #include <acdf/product/product.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
+#include <acdf/visibility/visibility.h>
 
 #include <atomic>
 #include <cstdlib>

@@ -35,6 +35,7 @@ typedef struct AcdfLocal {
  * for one that was opened otherwise, or moved since. */
 enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_ROWS };
 
+/* A shading point: its normal, and what serves it. */
 typedef struct AcdfLocalPoint {
     uint8_t what;
     float surface[3];        /* the normal as given */
@@ -47,6 +48,7 @@ typedef struct AcdfLocalPoint {
 } AcdfLocalPoint;
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalPoint) <= 120); /* renderers keep many */
 
+/* The bins of a normal and their weights. Returns 0 for a normal that is zero or not finite. */
 ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {
     ACDF_RETURN_CURVES(&local->environment, local_bins(local, normal, out));
     return acdf_octahedral_bins(local->subdivisions, normal, out);

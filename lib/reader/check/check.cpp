@@ -6,6 +6,8 @@
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include "check/kinds.h"
 #include "message.h"
+
+#include <acdf/curves_interface.h>
 #endif
 
 #include <cstdarg>

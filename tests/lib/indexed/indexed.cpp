@@ -245,7 +245,7 @@ TEST(Indexed, axesAreMixedOneByOne) {
 TEST(Indexed, otherFilesHaveNone) {
     const Bytes bytes = complete_file().encode();
     acdf::File file;
-    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, acdf::with_curves()).ok());
     OpenedMaps opened{IndexedSpec()};
     acdf::IndexedEnvironment maps;
     ASSERT_TRUE(acdf::IndexedEnvironment::open(opened.file(), maps).ok());

@@ -13,7 +13,7 @@ namespace acdf_test {
 inline acdf::Status load_with_maps(const Bytes& bytes, const acdf::Limits& limits = {}) {
     const Exact exact(bytes);
     acdf::File file;
-    const acdf::Status status = acdf::File::from_memory(exact.data(), exact.size(), file, limits);
+    const acdf::Status status = acdf::File::from_memory(exact.data(), exact.size(), file, acdf::with_curves(limits));
     acdf::IndexedEnvironment maps;
     if (!status.ok() || file.kind() != ACDF_KIND_INDEXED) return status;
     return acdf::IndexedEnvironment::open(file, maps);
@@ -23,7 +23,7 @@ inline Findings findings_with_maps(const Bytes& bytes, const acdf::Limits& limit
     Findings out = findings(bytes, limits);
     const Exact exact(bytes);
     acdf::File file;
-    if (!acdf::File::from_memory(exact.data(), exact.size(), file, limits).ok()) return out;
+    if (!acdf::File::from_memory(exact.data(), exact.size(), file, acdf::with_curves(limits)).ok()) return out;
     if (file.kind() != ACDF_KIND_INDEXED) return out;
     const acdf::FindingSink sink = [](const acdf::Finding& finding, void* found) {
         auto& to = *static_cast<Findings*>(found);

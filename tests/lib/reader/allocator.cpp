@@ -1,4 +1,6 @@
 // Memory of open files, of both interfaces.
+#include "tests/lib/curves/open.h"
+
 #include <acdf/acdf.h>
 #include <acdf/reader.h>
 #include <acdf/views.h>
@@ -50,6 +52,7 @@ TEST(Memory, ofTheCallersAllocatorAndBackToIt) {
         Ledger ledger;
         AcdfLoadOptions options = {};
         options.allocator = ledger.allocator();
+        options.curves = acdf_curves();
         AcdfError error;
         AcdfFile* file = acdf_open_with(golden(name).c_str(), &options, &error);
         ASSERT_TRUE(file) << error.message;
@@ -66,7 +69,7 @@ TEST(Memory, ofTheCallersAllocatorAndBackToIt) {
 
 TEST(Memory, noOptionsAreTheDefault) {
     AcdfError error;
-    const Handle opened(acdf_open_with(golden("zlib").c_str(), nullptr, &error), acdf_close);
+    const Handle opened(acdf_open_with(golden("halvings_zlib").c_str(), nullptr, &error), acdf_close);
     ASSERT_TRUE(opened) << error.message;
     const Handle loaded(acdf_from_memory_with(acdf_header(opened.get()), acdf_size(opened.get()), nullptr, &error),
                         acdf_close);
@@ -80,6 +83,7 @@ TEST(Memory, thatIsNeverReleasedIsTheCallersToFree) {
     Ledger ledger;
     AcdfLoadOptions options = {};
     options.allocator = ledger.allocator();
+    options.curves = acdf_curves();
     options.allocator.release = nullptr;
     acdf_close(acdf_open_with(golden("zlib").c_str(), &options, nullptr));
     EXPECT_GE(ledger.out.size(), 2u);
@@ -93,6 +97,7 @@ TEST(Memory, thatEndsIsAnErrorAndNotALeak) {
         ledger.left = left;
         acdf::LoadOptions options;
         options.allocator = ledger.allocator();
+        options.curves = acdf_curves();
         acdf::File file;
         const acdf::Status status = acdf::File::open(golden("zlib").c_str(), file, options);
         if (left < 2) EXPECT_EQ(status.code, ACDF_OUT_OF_MEMORY) << left; // bytes; inflated chunks
@@ -102,6 +107,7 @@ TEST(Memory, thatEndsIsAnErrorAndNotALeak) {
         AcdfLoadOptions c_options = {};
         ledger.left = left;
         c_options.allocator = ledger.allocator();
+        c_options.curves = acdf_curves();
         acdf_close(acdf_open_with(golden("zlib").c_str(), &c_options, nullptr));
         EXPECT_TRUE(ledger.out.empty()) << left;
     }
@@ -117,8 +123,8 @@ TEST(Memory, bothInterfacesUseBytesInPlaceAtTheSameAlignment) {
         const unsigned char* data = room + shift;
         std::memcpy(room + shift, bytes.data(), bytes.size());
         acdf::File file;
-        ASSERT_TRUE(acdf::File::from_memory(data, bytes.size(), file).ok());
-        const Handle handle(acdf_from_memory(data, bytes.size(), nullptr), acdf_close);
+        ASSERT_TRUE(acdf::File::from_memory(data, bytes.size(), file, acdf::with_curves()).ok());
+        const Handle handle(acdf_test::from_memory_in_c(data, bytes.size()), acdf_close);
         ASSERT_TRUE(handle);
         const bool in_place = shift % 8 == 0;
         EXPECT_EQ(static_cast<const void*>(&file.header()) == data, in_place) << shift;
@@ -136,9 +142,9 @@ TEST(Views, canBeMembers) {
     EXPECT_TRUE(light.sky.empty() && light.local.empty() && light.brdf.empty() && light.table.empty());
     EXPECT_EQ(light.sky.total(), 0.0);
     acdf::File sky, local, brdf;
-    ASSERT_TRUE(acdf::File::open(golden("smallest").c_str(), sky).ok());
-    ASSERT_TRUE(acdf::File::open(golden("local").c_str(), local).ok());
-    ASSERT_TRUE(acdf::File::open(golden("brdf").c_str(), brdf).ok());
+    ASSERT_TRUE(acdf::File::open(golden("smallest").c_str(), sky, acdf::with_curves()).ok());
+    ASSERT_TRUE(acdf::File::open(golden("local").c_str(), local, acdf::with_curves()).ok());
+    ASSERT_TRUE(acdf::File::open(golden("brdf").c_str(), brdf, acdf::with_curves()).ok());
     light.sky = sky.environment();
     light.local = local.local();
     light.brdf = brdf.brdf();

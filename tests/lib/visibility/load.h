@@ -13,7 +13,7 @@ inline acdf::Status load_visible(const Bytes& bytes, const acdf::Limits& limits 
     const Exact exact(bytes);
     acdf::File file;
     acdf::VisibleLocalView view;
-    const acdf::Status status = acdf::File::from_memory(exact.data(), exact.size(), file, limits);
+    const acdf::Status status = acdf::File::from_memory(exact.data(), exact.size(), file, acdf::with_curves(limits));
     return status.ok() ? acdf::VisibleLocalView::of(file, view) : status;
 }
 
@@ -22,7 +22,7 @@ inline Findings visible_findings(const Bytes& bytes) {
     Findings out = findings(bytes);
     const Exact exact(bytes);
     acdf::File file;
-    if (!acdf::File::from_memory(exact.data(), exact.size(), file).ok()) return out;
+    if (!acdf::File::from_memory(exact.data(), exact.size(), file, acdf::with_curves()).ok()) return out;
     std::ostringstream text;
     acdf::validate_visibility(*file.get(), [&](const acdf::Finding& finding) {
         out.rules.insert(finding.number);

@@ -39,7 +39,9 @@ TEST(MovedVisibleViews, SampleWhatTheyDrew) {
         int count = 0;
         {
             acdf::File file;
-            ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+            const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+            if (status.rule == 5002) return; // curves, whose views are not moved
+            ASSERT_TRUE(status.ok()) << status.message;
             if (file.kind() != ACDF_KIND_LOCAL) return;
             acdf::VisibleLocalView view;
             ASSERT_TRUE(acdf::VisibleLocalView::of(file, view).ok());

@@ -44,7 +44,7 @@ bool samples_in_arrays(const char* path, const acdf::LocalEnvironmentView& light
 
 int main(int argc, char** argv) {
     acdf::File file, of_curves;
-    if (argc != 3 || acdf::File::open(argv[2], of_curves).code != acdf::ErrorCode::unsupported ||
+    if (argc != 3 || acdf::File::open(argv[2], of_curves).code != ACDF_UNSUPPORTED ||
         !acdf::File::open(argv[2], of_curves, acdf::with_curves()).ok() ||
         !(of_curves.environment().sample(0.3, 0.4).pdf > 0.0f))
         return 1;

@@ -1,5 +1,5 @@
 // The view of a local environment file with its visibility cells and portals. C++17; freestanding over
-// acdf/visibility/visible_local.h but for VisibleLocalView::of, which is linked (acdf::visibility). For kernels
+// acdf/visibility/visible_local.h but for VisibleLocalView::of, which calls acdf::visibility. For kernels
 // define ACDF_FN and ACDF_METHOD as for acdf/views.h.
 //
 //   acdf::VisibleLocalView light;
@@ -11,6 +11,7 @@
 
 #include <acdf/reader.h>
 #include <acdf/views.h>
+#include <acdf/visibility/visibility_c.h>
 #include <acdf/visibility/visible_local.h>
 
 namespace acdf {
@@ -28,8 +29,13 @@ public:
     /// Makes the view of a local environment file. Checks what the file stores of cells and portals, in time linear
     /// in their size; allocates nothing. A file without cells gives a view for which the normal alone counts.
     /// Fails, and leaves `view` empty, where a rule of SPEC.md is broken or the file is of another kind.
-    static Status of(const File& file, VisibleLocalView& view) noexcept;
+    static Status of(const File& file, VisibleLocalView& view) noexcept {
+        Status status;
+        if (!acdf_visible_local(file.get(), &view.data_, &status)) view = VisibleLocalView();
+        return status;
+    }
 
+    /// Whether it was made by default: then only this may be asked.
     ACDF_METHOD bool empty() const noexcept { return data_.local.environment.columns == 0; }
     /// What serves a normal, wherever it is.
     ACDF_METHOD LocalEnvironmentView local() const noexcept { return LocalEnvironmentView(data_.local); }
