@@ -13,7 +13,8 @@ namespace acdf_test {
 inline acdf::Status load_with_maps(const Bytes& bytes, const acdf::Limits& limits = {}) {
     const Exact exact(bytes);
     acdf::File file;
-    const acdf::Status status = acdf::File::from_memory(exact.data(), exact.size(), file, acdf::with_curves(limits));
+    const acdf::Status status =
+        acdf::File::from_memory(exact.data(), exact.size(), file, acdf::with_curves(limits));
     acdf::IndexedEnvironment maps;
     if (!status.ok() || file.kind() != ACDF_KIND_INDEXED) return status;
     return acdf::IndexedEnvironment::open(file, maps);

@@ -13,7 +13,8 @@ inline acdf::Status load_visible(const Bytes& bytes, const acdf::Limits& limits 
     const Exact exact(bytes);
     acdf::File file;
     acdf::VisibleLocalView view;
-    const acdf::Status status = acdf::File::from_memory(exact.data(), exact.size(), file, acdf::with_curves(limits));
+    const acdf::Status status =
+        acdf::File::from_memory(exact.data(), exact.size(), file, acdf::with_curves(limits));
     return status.ok() ? acdf::VisibleLocalView::of(file, view) : status;
 }
 
