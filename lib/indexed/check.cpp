@@ -87,13 +87,12 @@ void check_each_map(const Payload& payload, u64 at, const AcdfMap* maps, const A
     double sum = 0.0;
     for (u32 i = 0; i < header.map_count && !report.stopped(); ++i) {
         if (!is_right_map(maps[i], header.sun != 0))
-            report.add(7022, payload.at(at + i * sizeof(AcdfMap)), "map %u: share %g, sun_share %g, radius %g", i,
-                       static_cast<double>(maps[i].share), static_cast<double>(maps[i].sun_share),
-                       static_cast<double>(maps[i].radius));
+            report.add(7022, payload.at(at + i * sizeof(AcdfMap)),
+                       "map %u has a share, or a sun, that is out of range", i);
         sum += static_cast<double>(maps[i].share);
     }
     if (!(std::fabs(sum - 1.0) <= 0x1p-20))
-        report.add(7022, payload.at(at), "the shares of maps add up to %.9g", sum);
+        report.add(7022, payload.at(at), "the shares of maps do not add up to 1");
 }
 
 // The codes of maps: those of the top of the tree.
@@ -110,8 +109,7 @@ void check_map_splits(const Payload& payload, const MapsLayout& layout, Report& 
 } // namespace
 
 void take_parts(const AcdfFile& file, Parts& parts) noexcept {
-    parts.description = file.description;
-    parts.axes = file.axes;
+    static_cast<Contents&>(parts) = file;
     const AcdfHalvedTree* const tree = file.environment.halved;
     if (!tree) return;                                                    // two axes are not sampled: rule 7020
     parts.halvings = const_cast<AcdfHalving*>(acdf_halvings_nodes(tree)); // which are only read

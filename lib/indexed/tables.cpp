@@ -135,7 +135,7 @@ AcdfTop* make_top(const Parts& parts, const Maps& maps, const double* heights, c
     top->bits = layout.bits;
     top->starts = static_cast<u32>(layout.starts);
     for (u32 axis = 0; axis < 2; ++axis)
-        top->position_scale[axis] = static_cast<u32>(position_scale(parts.axes[axis].resolution, layout.bits));
+        top->position_scale[axis] = position_scale(parts.axes[axis].resolution, layout.bits);
     TopMaker(parts, maps, heights, top).run();
     return top;
 }

@@ -1,6 +1,5 @@
 // Opening and closing. The rules are checked in check/*.cpp; c_api.cpp says what an open file holds.
 #include "check/check.h"
-#include "check/rule_codes.h"
 #include "halved_tree.h"
 #include "input_file.h"
 #include "memory.h"
@@ -130,13 +129,7 @@ void give_memory(AcdfFile& file) noexcept {
 }
 
 void take_parts(const Parts& parts, AcdfFile& file) noexcept {
-    file.description = parts.description;
-    file.axes = parts.axes;
-    file.bins = parts.bins;
-    file.partner = parts.partner;
-    file.metadata = parts.metadata;
-    file.metadata_count = parts.metadata_count;
-    file.payloads = parts.payloads;
+    static_cast<Contents&>(file) = parts;
     if (file.kind() != ACDF_KIND_ENVIRONMENT) return;
     file.environment.columns = parts.axes[ACDF_AXIS_PHI].resolution;
     file.environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
@@ -159,8 +152,8 @@ bool load(const LoadOptions& options, AcdfFile& file, AcdfError& status) noexcep
     }
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (file.kind() == ACDF_KIND_TABLE) {
-        make_view(parts, options.tables, file);
-        if (!file.memory[2].data) file.memory[2] = std::exchange(parts.halvings_block, {}); // the nodes alone
+        make_view(parts, file);
+        file.memory[2] = std::exchange(parts.halvings_block, {});
         return true;
     }
 #endif
@@ -170,7 +163,7 @@ bool load(const LoadOptions& options, AcdfFile& file, AcdfError& status) noexcep
 #ifndef ACDF_ENVIRONMENT_ONLY
     if (parts.normals && !make_rows(parts, options.tables, file))
         return fail(status, 1003, "no memory for %llu rows", ull{parts.normals->row_count});
-    if (file.kind() != ACDF_KIND_ENVIRONMENT) make_view(parts, options.tables, file);
+    if (file.kind() != ACDF_KIND_ENVIRONMENT) make_view(parts, file);
 #endif
     return true;
 }

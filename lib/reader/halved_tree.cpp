@@ -1,6 +1,5 @@
 #include "halved_tree.h"
 
-#include "lookup_walk.h"
 #include "memory.h"
 
 #include <acdf/sample.h>
@@ -34,21 +33,68 @@ float leaf_pdf(const HalvedSource& source, const AcdfHalvedTree* tree, const Acd
     return acdf_halved_pdf(&environment, range, acdf_span_share(&steps[0]) * acdf_span_share(&steps[1]));
 }
 
-// In 32 bits: of an axis with fewer steps than squares, some squares have no step.
-u32 scale_of(const HalvedSource& source, int axis, u32 bits) {
-    return static_cast<u32>(position_scale(source.resolution[axis], bits));
-}
+/// Finds the deepest node that holds each square of a grid over random numbers, or over positions.
+class LookupWalk {
+public:
+    LookupWalk(const HalvedSource& source, u32 bits, bool by_position)
+        : nodes_(source.nodes), by_position_(by_position), shift_(by_position ? 32 : 31 - bits) {
+        for (u32 axis = 0; axis < 2; ++axis) {
+            steps[axis] = {{0, ACDF_STEPS}};
+            box[axis] = {{0, source.resolution[axis]}};
+            squares[axis] = {{0, 1u << bits}};
+            scale_[axis] = by_position ? position_scale(source.resolution[axis], bits) : 1;
+        }
+    }
+
+    AcdfSpan steps[2], box[2]; ///< of the node that put() gets
+    AcdfSpan squares[2];       ///< whose deepest node it is
+
+    /// Calls put(node) for `node` and those below it that are the deepest ones of a square, or more. At most 31
+    /// deep for each axis.
+    template <class Put>
+    void visit(u32 node, const Put& put) {
+        for (const AcdfSpan& span : squares)
+            if (span.end[0] >= span.end[1]) return;
+        if (node == ACDF_LEAF) return put(node);
+        const AcdfHalving halving = nodes_[node];
+        const u32 axis = halving.link & 7u, middle = acdf_span_middle(&box[axis]);
+        const u32 border = by_position_ ? middle : halving.threshold;
+        const AcdfSpan own_steps = steps[axis], own_box = box[axis], all = squares[axis];
+        // Squares that end below the border, and those that begin below it: one more, where it lies within one.
+        const u32 below = within(all, square_of(axis, border));
+        const u32 above = border > 0 ? within(all, square_of(axis, border - 1) + 1) : below;
+        squares[axis] = {{below, above}};
+        if (below < above) put(node);
+        for (u32 upper = 0; upper < 2; ++upper) {
+            steps[axis] = own_steps;
+            box[axis] = own_box;
+            steps[axis].end[1 - upper] = halving.threshold;
+            box[axis].end[1 - upper] = middle;
+            squares[axis] = upper ? AcdfSpan{{above, all.end[1]}} : AcdfSpan{{all.end[0], below}};
+            visit(halving.link >> (3 + upper) & 1u ? ACDF_LEAF : node + (upper ? halving.link >> 5 : 1), put);
+        }
+        steps[axis] = own_steps;
+        box[axis] = own_box;
+        squares[axis] = all;
+    }
+
+private:
+    u32 square_of(u32 axis, u32 step) const { return static_cast<u32>(step * u64{scale_[axis]} >> shift_); }
+    static u32 within(const AcdfSpan& span, u32 square) {
+        return square < span.end[0] ? span.end[0] : square > span.end[1] ? span.end[1] : square;
+    }
+
+    const AcdfHalving* nodes_;
+    bool by_position_;
+    u32 shift_, scale_[2];
+};
 
 // Fills the grids of `tree`, whose heights are there, or, where it is null, counts their starts alone.
 u32 make_starts(const HalvedSource& source, u32 bits, AcdfHalvedTree* tree) {
     u32 count = 0;
-    LookupWalk walk(source.nodes, 2);
     for (const bool by_position : {false, true}) {
-        Squares grid[2];
-        for (int axis = 0; axis < 2; ++axis)
-            grid[axis] =
-                by_position ? squares_of_positions(scale_of(source, axis, bits), bits) : squares_of_numbers(bits);
-        walk.run(source.count ? 0 : ACDF_LEAF, source.resolution, grid, by_position, [&](u32 node) {
+        LookupWalk walk(source, bits, by_position);
+        walk.visit(source.count ? 0 : ACDF_LEAF, [&](u32 node) {
             if (tree) {
                 AcdfStart& start = at_word<AcdfStart>(tree, tree->starts)[count];
                 start.node = node;
@@ -142,7 +188,7 @@ AcdfHalvedTree* make_halved_tree(const HalvedSource& source, const AcdfAllocator
     tree->numbers = static_cast<u32>(layout.numbers);
     tree->positions = static_cast<u32>(layout.positions);
     tree->starts = static_cast<u32>(layout.starts);
-    for (int axis = 0; axis < 2; ++axis) tree->position_scale[axis] = scale_of(source, axis, bits);
+    for (int axis = 0; axis < 2; ++axis) tree->position_scale[axis] = position_scale(source.resolution[axis], bits);
     make_starts(source, bits, tree);
     return tree;
 }

@@ -1,17 +1,11 @@
 // The views of local environments, BRDFs and tables.
 #include "check/check.h"
 #include "opened_file.h"
-#include "tables/table_lookup.h"
 
 #include <acdf/views.h>
 
 namespace acdf {
 namespace {
-
-// What is made of a file of so many bytes: not more.
-std::size_t most_table_bytes(const AcdfFile& file) {
-    return 8 * static_cast<std::size_t>(file.size) + (std::size_t{1} << 20);
-}
 
 void make_local(const Parts& parts, AcdfFile& file) {
     const AcdfDescription& description = *parts.description;
@@ -49,23 +43,19 @@ void make_brdf(const Parts& parts, AcdfFile& file) {
                  file.environment.tree};
 }
 
-void make_table(const Parts& parts, bool tables, AcdfFile& file) {
+void make_table(const Parts& parts, AcdfFile& file) {
     const u32 axes = parts.description->axis_count;
     u32 indexed = 0;
     while (parts.axes[indexed].role == ACDF_AXIS_INDEXED) ++indexed; // rule 5012: one axis at least is sampled
-    file.table = {parts.halvings,           parts.bins,    parts.axes, axes, indexed,
-                  parts.description->total, parts.partner, nullptr};
-    if (tables)
-        make_table_lookup(file.table, parts.description->bin_count, parts.halving_count, most_table_bytes(file),
-                          file.allocator, file.memory[2]);
+    file.table = {parts.halvings, parts.bins, parts.axes, axes, indexed, parts.description->total, parts.partner};
 }
 
 } // namespace
 
-void make_view(const Parts& parts, bool tables, AcdfFile& file) noexcept {
+void make_view(const Parts& parts, AcdfFile& file) noexcept {
     if (file.kind() == ACDF_KIND_LOCAL) make_local(parts, file);
     if (file.kind() == ACDF_KIND_BRDF) make_brdf(parts, file);
-    if (file.kind() == ACDF_KIND_TABLE) make_table(parts, tables, file);
+    if (file.kind() == ACDF_KIND_TABLE) make_table(parts, file);
 }
 
 LocalEnvironmentView File::local() const noexcept { return LocalEnvironmentView(opened_->local); }

@@ -7,16 +7,9 @@
 #include <acdf/reader.h>
 
 /// Plain data: views and the memory that they point into. The view of another kind than the file's is zeros.
-struct AcdfFile {
+struct AcdfFile : acdf::Contents {
     const std::uint8_t* bytes;
     std::uint64_t size;
-    const AcdfDescription* description;
-    const AcdfAxis* axes;
-    const AcdfBin* bins; ///< null: none
-    const AcdfPartner* partner;
-    const std::uint8_t* metadata;
-    std::uint32_t metadata_count;
-    acdf::Payloads payloads; ///< all chunks that are known, for rooms that read more than views of the reader
     AcdfEnvironment environment;
 #ifndef ACDF_ENVIRONMENT_ONLY
     AcdfLocal local;
@@ -40,9 +33,8 @@ namespace acdf {
 bool first_error(const Finding& finding, void* status);
 
 #ifndef ACDF_ENVIRONMENT_ONLY
-/// The view of a kind that is not an environment. `tables`: with its runtime tables, where there is memory for
-/// them.
-void make_view(const Parts& parts, bool tables, AcdfFile& file) noexcept;
+/// The view of a kind that is not an environment.
+void make_view(const Parts& parts, AcdfFile& file) noexcept;
 #endif
 
 } // namespace acdf

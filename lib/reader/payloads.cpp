@@ -8,11 +8,6 @@
 namespace acdf {
 namespace {
 
-constexpr u32 known_types[known_chunks] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS,       ACDF_CHUNK_TREE,
-                                           ACDF_CHUNK_METADATA,    ACDF_CHUNK_LOCAL,      ACDF_CHUNK_VIEWS,
-                                           ACDF_CHUNK_PARTNER,     ACDF_CHUNK_VISIBILITY, ACDF_CHUNK_PORTALS,
-                                           ACDF_CHUNK_HALVINGS,    ACDF_CHUNK_MAPS,       ACDF_CHUNK_NORMALS};
-
 // Whether a chunk is compressed and can be read: TREE by `curves` alone.
 bool is_compressed(const ChunkTable& table, const AcdfCurves* curves, u32 i) {
     const AcdfChunk& chunk = table.chunks[i];

@@ -70,8 +70,8 @@ bool check_splits(const Payload& payload, const AcdfVisibility& h, const AcdfVis
         }
         const AcdfVisibilitySplit& split = splits[next];
         if ((split.lower & 7u) > 5 || !std::isfinite(split.position))
-            report.add(7012, at(next), "split %u of cells: axis %u, position %g", next, split.lower & 7u,
-                       static_cast<double>(split.position));
+            report.add(7012, at(next), "split %u of cells is on axis %u, or at no finite position", next,
+                       split.lower & 7u);
         ++next;
         open[count++] = {split.upper, now.depth + 1};
         open[count++] = {split.lower >> 3, now.depth + 1};

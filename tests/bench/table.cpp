@@ -185,15 +185,12 @@ bool run(const std::vector<std::uint32_t>& sides) {
     options.goal = acdf::builder::Goal::of_budget(kBudget);
     acdf::builder::Table made;
     const acdf::builder::Status status = acdf::builder::table(array, options, made);
-    acdf::File file, walked;
-    acdf::LoadOptions no_tables;
-    no_tables.tables = false;
-    if (!status.ok() || !acdf::File::from_memory(made.bytes.data(), made.bytes.size(), file).ok() ||
-        !acdf::File::from_memory(made.bytes.data(), made.bytes.size(), walked, no_tables).ok()) {
+    acdf::File file;
+    if (!status.ok() || !acdf::File::from_memory(made.bytes.data(), made.bytes.size(), file).ok()) {
         std::fprintf(stderr, "bench_table: %s\n", status.message);
         return false;
     }
-    const acdf::TableView view = file.table(), walk = walked.table();
+    const acdf::TableView view = file.table();
     const FullTable full(values, sides);
     const AliasCells alias(values, sides);
     const Asked u(nullptr, 2), anywhere(&sides, 3);
@@ -222,18 +219,17 @@ bool run(const std::vector<std::uint32_t>& sides) {
     for (const std::uint32_t side : sides) shape += (shape.empty() ? "" : " x ") + std::to_string(side);
     std::printf("\n%s numbers; a file of %zu bytes with tables of %llu, %.4g relative variance; full table "
                 "%zu\n\n| ns a call (of the full "
-                "table's) | full table | alias table | file | no tables |\n|---|---|---|---|---|\n",
+                "table's) | full table | alias table | file |\n|---|---|---|---|\n",
                 shape.c_str(), made.bytes.size(), static_cast<unsigned long long>(file.table_bytes()),
                 made.accuracy.relative_variance, 2 * 4 * values.size());
     for (const bool evicted : {false, true}) {
-        report(evicted ? "sample, caches evicted" : "sample",
-               {draws(full, u), draws(alias, u), ours_samples(view), ours_samples(walk)}, evicted);
-        report(evicted ? "pdf of uniform points, caches evicted" : "pdf of uniform points",
-               {densities(full, anywhere), densities(alias, anywhere), ours(view, anywhere), ours(walk, anywhere)},
+        report(evicted ? "sample, caches evicted" : "sample", {draws(full, u), draws(alias, u), ours_samples(view)},
                evicted);
+        report(evicted ? "pdf of uniform points, caches evicted" : "pdf of uniform points",
+               {densities(full, anywhere), densities(alias, anywhere), ours(view, anywhere)}, evicted);
     }
-    report("pdf of sampled points",
-           {densities(full, sampled), densities(alias, sampled), ours(view, sampled), ours(walk, sampled)}, false);
+    report("pdf of sampled points", {densities(full, sampled), densities(alias, sampled), ours(view, sampled)},
+           false);
     return true;
 }
 

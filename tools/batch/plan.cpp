@@ -3,7 +3,7 @@
 #include "build/text/format_names.h"
 #include "compress/parallel.h"
 #include "input/probe/source.h"
-#include "reader/check/rule_codes.h"
+#include "reader/check/check.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/messages.h"
 #include "tools/cli/sequence.h"

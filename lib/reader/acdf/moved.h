@@ -74,7 +74,6 @@ static inline void acdf_move_brdf(AcdfBrdf* brdf, const AcdfMove* moves, int cou
 /* The same of a table. */
 static inline void acdf_move_table(AcdfTable* table, const AcdfMove* moves, int count) {
     ACDF_MOVE(AcdfHalving, table->nodes);
-    ACDF_MOVE(AcdfTableLookup, table->lookup);
     ACDF_MOVE(AcdfBin, table->bins);
     ACDF_MOVE(AcdfAxis, table->axes);
     ACDF_MOVE(AcdfPartner, table->partner);

@@ -16,42 +16,15 @@
 extern "C" {
 #endif
 
-/* The lookup grids of a bin: over the random numbers of its sampled axes and over their positions, 2^bits squares
- * along each axis, the last one fastest. Each square has the deepest node that holds it. */
-typedef struct AcdfTableGrid {
-    uint32_t numbers, positions;  /* number of a start, u32 each; words from the start of the tables */
-    uint32_t all_bits;            /* 0: there are none */
-    uint32_t bits[ACDF_MAX_AXES]; /* of sampled axes, from 0 */
-    uint32_t reserved;
-    uint64_t scale[ACDF_MAX_AXES]; /* step * scale / 2^32 is the square of a grid step */
-} AcdfTableGrid;
-
-/* Where a descent begins. The spans of random numbers of each sampled axis follow, then those of its steps. */
-typedef struct AcdfTableStart {
-    uint32_t node; /* or ACDF_LEAF */
-    uint32_t reserved;
-    double pdf; /* of a leaf; else 0 */
-} AcdfTableStart;
-
-/* Runtime tables, made when a file is opened: flat words without pointers, offsets in words from the start of this
- * struct. The nodes lie behind it, too. */
-typedef struct AcdfTableLookup {
-    uint32_t words;       /* of all */
-    uint32_t grids;       /* AcdfTableGrid, one a bin */
-    uint32_t starts;      /* AcdfTableStart */
-    uint32_t start_words; /* from one to the next */
-} AcdfTableLookup;
-
 /* A pdf over the sampled axes for each bin of the indexed ones, in a checked file. */
 typedef struct AcdfTable {
-    const AcdfHalving* nodes;      /* of the trees of all bins */
-    const AcdfBin* bins;           /* row-major over the indexed axes, the last one fastest */
-    const AcdfAxis* axes;          /* indexed ones first */
-    uint32_t axis_count;           /* of both roles, at most ACDF_MAX_AXES */
-    uint32_t indexed_count;        /* less than axis_count */
-    double total;                  /* sum over the bins of the integral over the sampled axes */
-    const AcdfPartner* partner;    /* null: to be used alone */
-    const AcdfTableLookup* lookup; /* null: each call descends from the root */
+    const AcdfHalving* nodes;   /* of the trees of all bins */
+    const AcdfBin* bins;        /* row-major over the indexed axes, the last one fastest */
+    const AcdfAxis* axes;       /* indexed ones first */
+    uint32_t axis_count;        /* of both roles, at most ACDF_MAX_AXES */
+    uint32_t indexed_count;     /* less than axis_count */
+    double total;               /* sum over the bins of the integral over the sampled axes */
+    const AcdfPartner* partner; /* null: to be used alone */
 } AcdfTable;
 
 /* Where a point falls, on each sampled axis from 0. */
@@ -148,48 +121,12 @@ ACDF_FN double acdf_table_cell_pdf(const AcdfTable* table, double p, const AcdfT
     return acdf_clamp(p, ACDF_DOUBLE_MIN, ACDF_DOUBLE_MAX);
 }
 
-/* The square of a step of an axis. */
-ACDF_INLINE uint32_t acdf_table_square(const AcdfTableGrid* grid, uint32_t i, uint32_t step) {
-    return (uint32_t)(step * grid->scale[i] >> 32);
-}
-
-/* Begins a descent to the leaf that steps of random numbers lead to or, `by_position`, that holds grid steps.
- * Returns where; null: the root, ACDF_LEAF or not, of all there is. */
-ACDF_INLINE const AcdfTableStart* acdf_table_begin(const AcdfTable* table, const AcdfBin* bin, const uint32_t* step,
-                                                   int by_position, AcdfTablePosition* place) {
-    const uint32_t count = acdf_table_sampled_count(table);
-    const uint32_t* words = (const uint32_t*)(const void*)table->lookup;
-    const AcdfTableGrid* grid;
-    const AcdfTableStart* start;
-    const AcdfSpan* spans;
-    uint32_t square = 0, i;
-    grid = words ? (const AcdfTableGrid*)(const void*)(words + table->lookup->grids) + (bin - table->bins) : 0;
-    if (!grid || grid->all_bits == 0) {
-        acdf_table_whole(table, place);
-        return 0;
-    }
-    for (i = 0; i < count; ++i)
-        square = square << grid->bits[i] |
-                 (by_position ? acdf_table_square(grid, i, step[i]) : step[i] >> (31u - grid->bits[i]));
-    start = (const AcdfTableStart*)(const void*)(words + table->lookup->starts +
-                                                 (size_t)words[(by_position ? grid->positions : grid->numbers) +
-                                                               square] *
-                                                     table->lookup->start_words);
-    spans = (const AcdfSpan*)(const void*)(start + 1);
-    for (i = 0; i < count; ++i) {
-        place->steps[i] = spans[i];
-        place->box[i] = spans[count + i];
-    }
-    return start;
-}
-
 /* Samples a point. index[indexed_count] as in acdf_table_bin; u[sampled count] in [0, 1], clamped, NaN counts as 0.
  * Fills x[sampled count], monotone in each u within a cell, and returns the pdf there, finite and > 0.
  * Returns 0, and leaves x as it is, where there is nothing to sample. */
 ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, const double* u, double* x) {
     const AcdfBin* bin = acdf_table_bin(table, index);
     const uint32_t count = acdf_table_sampled_count(table);
-    const AcdfTableStart* start;
     AcdfTablePosition place;
     double number[ACDF_MAX_AXES];
     uint32_t step[ACDF_MAX_AXES], i;
@@ -198,8 +135,8 @@ ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, 
         number[i] = acdf_unit_interval(u[i]);
         step[i] = acdf_step_of(number[i]);
     }
-    start = acdf_table_begin(table, bin, step, 0, &place);
-    acdf_halvings_sample(table->nodes, start ? start->node : bin->root, step, place.steps, place.box);
+    acdf_table_whole(table, &place);
+    acdf_halvings_sample(table->nodes, bin->root, step, place.steps, place.box);
     for (i = 0; i < count; ++i) {
         const AcdfAxis* a = acdf_table_axis(table, i);
         const double low = (double)place.box[i].end[0], high = (double)place.box[i].end[1];
@@ -207,53 +144,33 @@ ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, 
         const double position = low + acdf_span_fraction(&place.steps[i], number[i]) * (high - low);
         x[i] = acdf_table_coordinate(a, acdf_clamp(position, low + border, high - border));
     }
-    if (start && start->node == ACDF_LEAF) return start->pdf;
     return acdf_table_cell_pdf(table, acdf_table_probability(table, &place), &place);
 }
 
-/* The bin of a point x[sampled count] and the grid steps that hold it; null where no sample falls, for NaN and
- * outside the axes' ranges. A border belongs to the cell of the higher position, the end of an axis to its last
- * cell. */
-ACDF_INLINE const AcdfBin* acdf_table_steps(const AcdfTable* table, const uint32_t* index, const double* x,
-                                            double* position, uint32_t* step) {
-    const AcdfBin* bin = acdf_table_bin(table, index);
-    const uint32_t count = acdf_table_sampled_count(table);
-    uint32_t i;
-    if (!bin) return 0;
-    for (i = 0; i < count; ++i) {
-        const AcdfAxis* a = acdf_table_axis(table, i);
-        if (!acdf_table_in_range(a, x[i])) return 0;
-        position[i] = acdf_table_position(a, x[i]);
-        step[i] = (uint32_t)position[i];
-        if (step[i] >= a->resolution) step[i] = a->resolution - 1;
-    }
-    return bin;
-}
-
-/* Finds the cell that holds x[sampled count]. Returns its probability; 0 where no sample falls. */
+/* Finds the cell that holds x[sampled count]. Returns its probability; 0 where no sample falls, for NaN and outside
+ * the axes' ranges. A border belongs to the cell of the higher position, the end of an axis to its last cell. */
 ACDF_FN double acdf_table_find(const AcdfTable* table, const uint32_t* index, const double* x,
                                AcdfTablePosition* place) {
-    uint32_t step[ACDF_MAX_AXES];
-    const AcdfBin* bin = acdf_table_steps(table, index, x, place->position, step);
-    const AcdfTableStart* start;
+    const AcdfBin* bin = acdf_table_bin(table, index);
+    const uint32_t count = acdf_table_sampled_count(table);
+    uint32_t step[ACDF_MAX_AXES], i;
     if (!bin) return 0.0;
-    start = acdf_table_begin(table, bin, step, 1, place);
-    acdf_halvings_find(table->nodes, start ? start->node : bin->root, step, place->steps, place->box);
+    for (i = 0; i < count; ++i) {
+        const AcdfAxis* a = acdf_table_axis(table, i);
+        if (!acdf_table_in_range(a, x[i])) return 0.0;
+        place->position[i] = acdf_table_position(a, x[i]);
+        step[i] = (uint32_t)place->position[i];
+        if (step[i] >= a->resolution) step[i] = a->resolution - 1;
+    }
+    acdf_table_whole(table, place);
+    acdf_halvings_find(table->nodes, bin->root, step, place->steps, place->box);
     return acdf_table_probability(table, place);
 }
 
 /* The pdf with which acdf_table_sample samples x in the bin of `index`; 0 where no sample falls. */
 ACDF_FN double acdf_table_pdf(const AcdfTable* table, const uint32_t* index, const double* x) {
     AcdfTablePosition place;
-    uint32_t step[ACDF_MAX_AXES];
-    const AcdfBin* bin = acdf_table_steps(table, index, x, place.position, step);
-    const AcdfTableStart* start;
-    double p;
-    if (!bin) return 0.0;
-    start = acdf_table_begin(table, bin, step, 1, &place);
-    if (start && start->node == ACDF_LEAF) return start->pdf;
-    acdf_halvings_find(table->nodes, start ? start->node : bin->root, step, place.steps, place.box);
-    p = acdf_table_probability(table, &place);
+    const double p = acdf_table_find(table, index, x, &place);
     return p > 0.0 ? acdf_table_cell_pdf(table, p, &place) : 0.0;
 }
 

@@ -1,6 +1,5 @@
 // The file as a container: header, chunk table, payloads.
 #include "check/chunk_table.h"
-#include "check/rule_codes.h"
 #include "inflate.h"
 #include "memory.h"
 #ifndef ACDF_ENVIRONMENT_ONLY
@@ -14,6 +13,17 @@
 #include <cstring>
 
 namespace acdf {
+
+AcdfErrorCode code_of(int rule) noexcept {
+    constexpr short unsupported[] = {2003, 2006, 2007, 3002, 3005, 5001, 5002, 5003, 5004, 5005, 5019, 5021};
+    for (const int known : unsupported)
+        if (rule == known) return ACDF_UNSUPPORTED;
+    if (rule == 1001) return ACDF_CANNOT_OPEN;
+    if (rule == 1002) return ACDF_CANNOT_READ;
+    if (rule == 1003) return ACDF_OUT_OF_MEMORY;
+    if (rule == 1004 || rule == 3012) return ACDF_LIMIT_EXCEEDED;
+    return rule == 6012 ? ACDF_OK : ACDF_MALFORMED;
+}
 
 void Report::pass(const Finding& finding) noexcept {
     if (stopped_) return;
@@ -107,32 +117,28 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
 
 // ---- chunk table ----------------------------------------------------------------------------------------
 
-// In files of which kinds known chunks may be, a bit each, in their order.
-constexpr u8 kinds_of[known_chunks] = {0x3E, 0x3E, 0x2E, 0x3E, 0x04, 0x08, 0x16, 0x04, 0x04, 0x3E, 0x20, 0x0C};
-bool belongs(int known, u32 kind) { return kind - 1 > 4 || (kinds_of[known] >> kind & 1); }
-
-// Chunks that must be there.
-constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_TREE};
-constexpr u32 required_beside_halvings = 1, required_count = 3; // the first of them; all
-#ifndef ACDF_ENVIRONMENT_ONLY
-constexpr u32 required_of_maps[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_HALVINGS, ACDF_CHUNK_MAPS};
-constexpr u32 required_of_normals[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_NORMALS};
-constexpr u32 required_of_tables[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_HALVINGS};
-
-// Whether bins of a kind have rows of codes at the top of a tree of halvings.
-bool has_rows(u32 kind) { return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF; }
-
-const u32* required_of(u32 kind, bool halved) {
-    if (kind == ACDF_KIND_INDEXED) return required_of_maps;
-    if (kind == ACDF_KIND_TABLE) return required_of_tables;
-    return halved && has_rows(kind) ? required_of_normals : required_types;
-}
-#endif
-
-// Whether a reader that does not know a chunk must refuse the file.
-bool is_critical(int known) {
-    return known != chunk_metadata && known != chunk_visibility && known != chunk_portals;
-}
+// In files of which kinds a known chunk may be, and must be with HALV and without it, a bit each; whether readers
+// that do not know it must refuse the file.
+struct ChunkRule {
+    u8 may, must_halved, must_curved;
+    bool critical;
+};
+constexpr ChunkRule rules_of[known_chunks] = {
+    {0x3E, 0x3E, 0x3E, true},  // DESC
+    {0x3E, 0x1C, 0x1E, true},  // BINS
+    {0x2E, 0x00, 0x0E, true},  // TREE
+    {0x3E, 0x00, 0x00, false}, // META
+    {0x04, 0x00, 0x00, true},  // LOCL: rule 7005
+    {0x08, 0x00, 0x00, true},  // VIEW: rule 8003
+    {0x16, 0x00, 0x00, true},  // COMP
+    {0x04, 0x00, 0x00, false}, // PLAC
+    {0x04, 0x00, 0x00, false}, // PORT
+    {0x3E, 0x3E, 0x30, true},  // HALV
+    {0x20, 0x20, 0x20, true},  // MAPS
+    {0x0C, 0x0C, 0x00, true},  // NORM
+};
+bool is_of(u8 kinds, u32 kind) { return kind - 1 > 4 || (kinds >> kind & 1); }
+bool belongs(int known, u32 kind) { return is_of(rules_of[known].may, kind); }
 
 bool is_all_printable(u32 type) {
     return is_printable(type, 0) && is_printable(type, 1) && is_printable(type, 2) && is_printable(type, 3);
@@ -161,7 +167,7 @@ void check_type_and_flags(const ChunkTable& table, u32 i, u32 kind, Report& repo
         report.add(3005, at + offsetof(AcdfChunk, codec), "codec %u of '%s' is unknown", chunk.codec, name.text);
     if ((chunk.flags & ~ACDF_CHUNK_FLAG_CRITICAL) != 0)
         report.add(3009, at + offsetof(AcdfChunk, flags), "unknown flags of '%s'", name.text);
-    else if (known >= 0 && critical != is_critical(known))
+    else if (known >= 0 && critical != rules_of[known].critical)
         report.add(3009, at + offsetof(AcdfChunk, flags), "'%s' is marked %s", name.text,
                    critical ? "critical" : "ancillary");
     if (chunk.reserved != 0)
@@ -208,17 +214,12 @@ bool has_chunk(const ChunkTable& table, u32 type) {
     return false;
 }
 
-void check_required(const ChunkTable& table, [[maybe_unused]] u32 kind, Report& report) {
+void check_required(const ChunkTable& table, u32 kind, Report& report) {
     const bool halved = has_chunk(table, ACDF_CHUNK_HALVINGS);
-#ifdef ACDF_ENVIRONMENT_ONLY
-    const u32* types = required_types;
-#else
-    const u32* types = required_of(kind, halved);
-#endif
-    const u32 count = halved && types == required_types ? required_beside_halvings : required_count;
-    for (u32 i = 0; i < count; ++i)
-        if (!has_chunk(table, types[i]))
-            report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(types[i]).text);
+    for (int i = 0; i < known_chunks && kind - 1 < 5; ++i)
+        if (is_of(halved ? rules_of[i].must_halved : rules_of[i].must_curved, kind) &&
+            !has_chunk(table, known_types[i]))
+            report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(known_types[i]).text);
 }
 
 void check_table(ChunkTable& table, const AcdfHeader& header, u64 size, Report& report) {
@@ -298,17 +299,13 @@ void check_halved(const ChunkTable& table, const Payloads& payloads, u32 kind, c
 
 // What has curves: a library beside the reader checks it.
 void check_curves(const ChunkTable& table, u32 kind, const AcdfCurves* curves, Report& report, Parts& parts) {
-    constexpr const char* fits[] = {"uniform", "cdf", "pdf", "variance"};
-    const Payload& description = parts.payloads.of[chunk_description];
-    const u32 fit = parts.description->fit - 1; // of another one: rule 5002
     const AcdfUncheckedFile file = {parts.payloads, kind, report, parts};
     if (curves) curves->check(&file);
-    else if (has_chunk(table, ACDF_CHUNK_TREE) && fit < 4)
+    else if (has_chunk(table, ACDF_CHUNK_TREE))
         report.add(
-            5002, description.at(offsetof(AcdfDescription, fit)),
-            "fit `%s` has curves, and the reader was opened without: pass acdf_curves() of acdf::curves, or make "
-            "the file with `--fit variance`",
-            fits[fit]);
+            5002, parts.payloads.of[chunk_description].at(offsetof(AcdfDescription, fit)),
+            "it has curves (chunk TREE), and the reader was opened without: pass acdf_curves() of acdf::curves, "
+            "or make the file with `--fit variance`");
 }
 
 } // namespace

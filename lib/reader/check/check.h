@@ -11,6 +11,10 @@
 
 namespace acdf {
 
+/// What opening returns where a rule is broken; ACDF_OK for rules of which only a warning is reported: such a file
+/// is read.
+ACDF_ONCE AcdfErrorCode code_of(int rule) noexcept;
+
 /// A broken rule.
 struct Finding {
     int number = 0; ///< of the rule
@@ -87,20 +91,24 @@ struct Payloads {
     Payload of[known_chunks];
 };
 
-/// Where the parts of a file lie once found: what `File` keeps. Owns the nodes of halvings.
-struct Parts {
+/// What an open file has of its bytes.
+struct Contents {
+    Payloads payloads;
+    const AcdfDescription* description = nullptr;
+    const AcdfAxis* axes = nullptr;       ///< description->axis_count
+    const AcdfBin* bins = nullptr;        ///< description->bin_count; null: none
+    const AcdfPartner* partner = nullptr; ///< null where the file is to be used alone
+    const u8* metadata = nullptr;         ///< the payload of META after its count; null where absent
+    u32 metadata_count = 0;
+};
+
+/// Where the parts of a file lie once found. Owns the nodes of halvings.
+struct Parts : Contents {
     Parts() = default;
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
     ~Parts();
 
-    Payloads payloads;
-    const AcdfDescription* description = nullptr;
-    const AcdfAxis* axes = nullptr;       ///< description->axis_count
-    const AcdfBin* bins = nullptr;        ///< description->bin_count
-    const AcdfPartner* partner = nullptr; ///< null where the file is to be used alone
-    const u8* metadata = nullptr;         ///< the payload of META after its count; null where absent
-    u32 metadata_count = 0;
     AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV
     AcdfBlock halvings_block = {};   ///< that holds them, of `allocator`
     AcdfAllocator allocator = {};

@@ -15,6 +15,12 @@ struct ChunkTable {
     u64 end() const { return offset_of(count); }
 };
 
+/// Types of chunks that are known, in the order of KnownChunk.
+constexpr u32 known_types[known_chunks] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS,       ACDF_CHUNK_TREE,
+                                           ACDF_CHUNK_METADATA,    ACDF_CHUNK_LOCAL,      ACDF_CHUNK_VIEWS,
+                                           ACDF_CHUNK_PARTNER,     ACDF_CHUNK_VISIBILITY, ACDF_CHUNK_PORTALS,
+                                           ACDF_CHUNK_HALVINGS,    ACDF_CHUNK_MAPS,       ACDF_CHUNK_NORMALS};
+
 /// The number of a chunk among those that this reader knows, or -1.
 int known_chunk(u32 type) noexcept;
 

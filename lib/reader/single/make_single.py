@@ -15,7 +15,7 @@ FOLDERS = (READER, READER.parent.parent / "format")
 PUBLIC = ("acdf/acdf.h", "acdf/reader.h", "acdf/environment_view.h", "acdf/views.h")
 PUBLIC_SMALL = PUBLIC[:3]
 SMALL = ("c_api.cpp", "file.cpp", "check/check.cpp", "check/partner.cpp", "check/description.cpp",
-         "check/halvings.cpp", "check/rule_codes.cpp", "halved_tree.cpp", "inflate.cpp", "payloads.cpp", "memory.cpp", "message.cpp",
+         "check/halvings.cpp", "halved_tree.cpp", "inflate.cpp", "payloads.cpp", "memory.cpp", "message.cpp",
          "input_file.cpp")
 BANNER = """// The reader of .acdf files, made by lib/reader/single/make_single.py from lib/reader: change that, not this. The licence
 // is that of the project (LICENSE). {what}

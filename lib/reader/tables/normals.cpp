@@ -107,7 +107,7 @@ bool lay_out(const Parts& parts, AcdfNormalRows& out) {
     out.group_stride = static_cast<u32>(group_stride);
     out.words = static_cast<u32>(at);
     for (u32 axis = 0; axis < 2; ++axis)
-        out.position_scale[axis] = static_cast<u32>(position_scale(parts.axes[axis].resolution, out.bits));
+        out.position_scale[axis] = position_scale(parts.axes[axis].resolution, out.bits);
     return at <= 0xFFFFFFFFu && at <= SIZE_MAX / 4;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "check/top.h"
-#include "lookup_walk.h"
+#include "halved_tree.h"
 
 #include <acdf/top_tile.h>
 

@@ -92,48 +92,6 @@ TEST(TableView, PdfIsExactlyThatOfTheSampleAndInvertLeadsBack) {
     }
 }
 
-TEST(TableView, LookupGridsChangeNothing) {
-    int made = 0;
-    for (const Space& space : spaces()) {
-        SCOPED_TRACE(space.name);
-        std::vector<std::uint32_t> resolution;
-        for (const auto& a : space.axes) resolution.push_back(a.resolution);
-        RandomTableTrees random_trees(5, resolution);
-        for (int bin = 0; bin < 40; ++bin) bin % 7 == 3 ? random_trees.add_none() : random_trees.add_bin();
-        std::vector<float> shares;
-        for (int bin = 0; bin < 40; ++bin) shares.push_back(bin % 7 == 3 ? 0.0f : 1.0f / 34);
-        std::vector<compress::AxisDescription> axes = {axis("bin", 40, 0.0, 1.0, ACDF_AXIS_INDEXED)};
-        axes.insert(axes.end(), space.axes.begin(), space.axes.end());
-        if (axes.size() > ACDF_MAX_AXES) continue;
-        const LoadedTable loaded(table_file(random_trees.trees, axes, shares));
-        LoadOptions options;
-        options.tables = false;
-        File plain;
-        ASSERT_TRUE(File::from_memory(loaded.bytes.data(), loaded.bytes.size(), plain, options).ok());
-        const TableView fast = loaded.file.table(), slow = plain.table();
-        EXPECT_EQ(slow.data().lookup, nullptr);
-        EXPECT_LE(loaded.file.table_bytes(),
-                  8 * loaded.file.size() + (1u << 20) + 8 * random_trees.trees.halvings.codes.size());
-        made += fast.data().lookup != nullptr;
-        std::mt19937_64 random(1);
-        for (std::uint32_t n = 0; n < 20000; ++n) {
-            const std::uint32_t bin = n % 40;
-            double u[8] = {}, x[8] = {}, y[8] = {}, back[8] = {}, again[8] = {};
-            for (std::size_t i = 0; i < space.axes.size(); ++i) u[i] = next_double(random);
-            ASSERT_EQ(fast.sample(&bin, u, x), slow.sample(&bin, u, y));
-            for (std::size_t i = 0; i < space.axes.size(); ++i) {
-                ASSERT_EQ(x[i], y[i]);
-                const auto& a = space.axes[i];
-                if (n % 2 == 0) x[i] = a.low + (a.high - a.low) * uniform(random); // anywhere
-            }
-            ASSERT_EQ(fast.pdf(&bin, x), slow.pdf(&bin, x));
-            ASSERT_EQ(fast.invert(&bin, x, back), slow.invert(&bin, x, again));
-            for (std::size_t i = 0; i < space.axes.size(); ++i) ASSERT_EQ(back[i], again[i]);
-        }
-    }
-    EXPECT_GE(made, 3);
-}
-
 TEST(TableView, OutOfRangeAndBadNumbersAreSafe) {
     RandomTableTrees random(3, {6, 7});
     for (int bin = 0; bin < 6; ++bin) bin == 4 ? random.add_none() : random.add_bin();

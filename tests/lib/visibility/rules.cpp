@@ -1,5 +1,5 @@
 // For every rule of visibility cells and portals a file that breaks it and no other.
-#include "reader/check/rule_codes.h"
+#include "reader/check/check.h"
 #include "tests/lib/reader/normals_builder.h"
 #include "tests/lib/visibility/cases.h"
 #include "tests/lib/visibility/load.h"

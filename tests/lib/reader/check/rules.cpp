@@ -1,6 +1,6 @@
 // For every rule of the table a file that breaks it and no other.
 #include "rules/rules.h"
-#include "reader/check/rule_codes.h"
+#include "reader/check/check.h"
 #include "tests/lib/indexed/load.h"
 #include "tests/lib/reader/brdf_builder.h"
 #include "tests/lib/reader/check/broken.h"
