@@ -1,15 +1,19 @@
-/* The arc tangent, sine and cosine in floats. One text for processors and for shaders of every language
- * (acdf/dialect.h). */
+/* The arc tangent, sine and cosine in floats. One text for processors and for shaders of every language, which have
+ * words of their own for functions and constants (acdf/shader/dialect.h). */
 #ifndef ACDF_ANGLE_FLOAT_H
 #define ACDF_ANGLE_FLOAT_H
 
-#include <acdf/dialect.h>
+#ifndef ACDF_FN1
+#define ACDF_ANGLES_IN_C
+#define ACDF_F32 float
+#define ACDF_LET(type, name) const type name
+#define ACDF_FN1(result, name, type, x) ACDF_INLINE result name(type x)
+#include <acdf/elementary.h>
+#endif
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* ---- angles ---------------------------------------------------------------------------------------- */
 
 /* atan(t) for t in [-1, 1], interpolated at the Chebyshev nodes of t^2; error below 2e-7. */
 ACDF_FN1(ACDF_F32, acdf_atan_float, ACDF_F32, t) {
@@ -32,5 +36,12 @@ ACDF_FN1(ACDF_F32, acdf_cosine_float, ACDF_F32, y) {
 
 #ifdef __cplusplus
 }
+#endif
+
+#ifdef ACDF_ANGLES_IN_C
+#undef ACDF_ANGLES_IN_C
+#undef ACDF_F32
+#undef ACDF_LET
+#undef ACDF_FN1
 #endif
 #endif

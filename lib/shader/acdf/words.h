@@ -1,8 +1,8 @@
-// The words of the reader's acdf/dialect.h that GLSL and HLSL share.
+// The words of the reader's acdf/shader/dialect.h that GLSL and HLSL share.
 #ifndef ACDF_WORDS_H
 #define ACDF_WORDS_H
 
-#include <acdf/dialect_words.h>
+#include <acdf/shader/dialect_words.h>
 
 #define ACDF_U32 uint
 #define ACDF_F32 float

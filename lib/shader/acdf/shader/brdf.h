@@ -1,6 +1,6 @@
 /* Samples and pdfs of BRDF files for shaders, as acdf/brdf.h says (SPEC.md 11), in floats, over the words that
  * acdf::ShaderTables::make_walk (acdf/shader/tables.h) makes. One text for processors and for shaders of every
- * language (acdf/dialect.h), as `acdf/shader/walk.h` is: a shader has both lights and surfaces.
+ * language (acdf/shader/dialect.h), as `acdf/shader/walk.h` is: a shader has both lights and surfaces.
  *
  * Trees (acdf/shader/tree.h) divide the square of half-vectors, and leaves are its cells. A sample has the pdf
  * of its direction's own position in the cell, as the reader's has.

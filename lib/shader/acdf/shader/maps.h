@@ -1,6 +1,6 @@
 /* Environments of several maps for shaders: a sky at coordinates, its samples and pdfs, over the words that
  * acdf::ShaderTables::make (acdf/shader/tables.h) makes. One text for processors and for shaders of every language
- * (acdf/dialect.h).
+ * (acdf/shader/dialect.h).
  *
  * Each map divides the top of the tree by shares of its own; below, all maps share the tree of acdf/shader/tree.h.
  * A sky is a mixture of up to eight maps, and the cone of the sun (acdf/indexed/indexed.h, cone.h). Pdfs are the

@@ -1,5 +1,5 @@
 /* The octahedral square (acdf/octahedral.h) in floats, and angles of any size. One text for processors and for
- * shaders of every language (acdf/dialect.h). */
+ * shaders of every language (acdf/shader/dialect.h). */
 #ifndef ACDF_SHADER_OCTAHEDRAL_FLOAT_H
 #define ACDF_SHADER_OCTAHEDRAL_FLOAT_H
 

@@ -1,11 +1,13 @@
 /* Pieces of the sphere, in which directions are sampled and found in floats. One text for processors and for
- * shaders of every language (acdf/dialect.h).
+ * shaders of every language (acdf/shader/dialect.h).
  *
  * The sphere is cut into eight pieces along z = 0 and the meridians half-way between the x and the y axes. In each,
  * azimuth is measured from the x or y axis in its middle: sine and cosine need no reduction, and minor over major
  * coordinate, in [-1, 1], orders directions by azimuth. Heights are measured from the nearer pole. */
 #ifndef ACDF_SHADER_PIECES_H
 #define ACDF_SHADER_PIECES_H
+
+#include <acdf/shader/dialect.h>
 
 #include <acdf/angle_float.h>
 

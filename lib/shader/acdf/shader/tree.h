@@ -1,6 +1,6 @@
 /* Trees for shaders: mixtures of rows, and traversals by random numbers or by the keys of a direction, over the
  * words that acdf::ShaderTables::make_walk (acdf/shader/tables.h) makes. 32-bit words and floats alone. One text
- * for processors and for shaders of every language (acdf/dialect.h).
+ * for processors and for shaders of every language (acdf/shader/dialect.h).
  *
  * A tree of splits ends in leaves. A split is known by its key, which directions have too, so that one tree serves
  * samples and pdfs, and both multiply the same factors in the same order. Random numbers are whole, and splits

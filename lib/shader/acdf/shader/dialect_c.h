@@ -1,9 +1,9 @@
-/* Words of acdf/dialect.h in C and its kin, in the reader as in what `acdf export` writes. A dialect says besides
+/* Words of acdf/shader/dialect.h in C and its kin, in the reader as in what `acdf export` writes. A dialect says besides
  * what whole numbers and tables are called and how functions begin. */
 #ifndef ACDF_DIALECT_C_H
 #define ACDF_DIALECT_C_H
 
-#include <acdf/dialect_words.h>
+#include <acdf/shader/dialect_words.h>
 
 #define ACDF_F32 float
 #define ACDF_WORD(tables, i) (tables)[i]

@@ -6,7 +6,7 @@
 #ifndef ACDF_DIALECT_H
 #define ACDF_DIALECT_H
 
-#include <acdf/dialect_c.h>
+#include <acdf/shader/dialect_c.h>
 #include <acdf/elementary.h>
 
 #define ACDF_DIALECT_FN ACDF_INLINE

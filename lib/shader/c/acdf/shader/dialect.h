@@ -1,8 +1,8 @@
-// The words of the reader's acdf/dialect.h in what head.txt makes C, C++, CUDA, HIP and OpenCL C of.
+// The words of the reader's acdf/shader/dialect.h in what head.txt makes C, C++, CUDA, HIP and OpenCL C of.
 #ifndef ACDF_DIALECT_H
 #define ACDF_DIALECT_H
 
-#include <acdf/dialect_c.h>
+#include <acdf/shader/dialect_c.h>
 
 #define ACDF_DIALECT_FN ACDF_EXPORT_FN
 #define ACDF_U32 acdf_u32
