@@ -1,7 +1,8 @@
-// Learns what a scene hides from the shadow rays of a first pass, without a mesh: learn_visibility sky.acdf
-// OUT.acdf The file is one of `acdf local`. The scene is a floor between two high walls, a stand-in
-// for that of a renderer. Prints the relative variance of a light sample before and after, and writes a file that
-// serves the next frame, or a farm.
+// learn_visibility SKY.acdf OUT.acdf
+//
+// Learns what a scene hides from the shadow rays of a first pass, without a mesh. SKY.acdf is a file of
+// `acdf local`. The scene is a floor between two high walls, a stand-in for that of a renderer. Prints the
+// relative variance of a light sample before and after, and writes a file that serves the next frame, or a farm.
 #include <acdf/learn.h>
 #include <acdf/visibility/visibility.h>
 

@@ -131,7 +131,7 @@ class LocalEnvironment(File):
     """A pdf for every normal: of light above its horizon, times the cosine.
 
     Normals have any length > 0. Their leading shape begins that of `u` or of the directions: one normal (3,) serves all,
-    (n, 3) serve n samples (n, 2), or n groups of m (n, m, 2).
+    (n, 3) serve n samples (n, 2), or n groups of m (n, m, 2). Visibility cells are not read: the normal alone counts.
     """
 
     def sample(self, normals: Any, u: Any, *, out: Optional[Samples] = None) -> Samples:
@@ -158,8 +158,8 @@ class Brdf(File):
     """A pdf of wi for every wo, both unit vectors in the surface's frame, z its normal. It follows what the surface
     reflects, times the cosine.
 
-    The leading shape of `wo` begins that of `u` or `wi`, as for normals. Arrays of some thousands are sampled by vector
-    instructions, bit for bit the same, with tables of about four times the file.
+    The leading shape of `wo` begins that of `u` or `wi`, as for normals. Where the package is built with Google Highway,
+    arrays are sampled by vector instructions, bit for bit the same.
     """
 
     def sample(self, wo: Any, u: Any, *, out: Optional[Samples] = None) -> Samples:
@@ -269,7 +269,7 @@ def open(source: Union[Path, bytes, bytearray, memoryview], *, tables: bool = Tr
     >>> acdf.open(b"no such thing" * 9)
     Traceback (most recent call last):
         ...
-    acdf._errors.FileError: wrong magic (rule 2001 at byte 0: ...
+    acdf._errors.FileError: this is not an .acdf file, or its first bytes are damaged (rule 2002 ...
     """
     if isinstance(source, (bytes, bytearray, memoryview)):
         handle = _acdf.open_bytes(bytes(source), tables)

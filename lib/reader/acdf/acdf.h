@@ -1,7 +1,7 @@
 /* The C interface of the reader: open a file here, then sample and evaluate with the inline functions of
  * acdf/sample.h, local.h, brdf.h and table.h. Languages without a C compiler can call those of
- * acdf/arrays/arrays.h, of a library beside this one. Another one, acdf/indexed/open.h, makes views of environments
- * of several maps.
+ * acdf/arrays/arrays.h, of a library beside this one. Others make views of environments of several maps
+ * (acdf/indexed/open.h) and of visibility cells (acdf/visibility/visibility_c.h).
  *
  *   AcdfError error;
  *   AcdfFile* file = acdf_open("probe.acdf", &error);

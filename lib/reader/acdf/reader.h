@@ -9,7 +9,8 @@
 //
 // Safety: `open` and `from_memory` accept any bytes. They check every rule of format/SPEC.md that memory
 // safety and a correct pdf need, in time linear in the size, and never read outside what they are given.
-// A file that was accepted can be sampled for ever without reading outside it.
+// A file that was accepted can be sampled for ever without reading outside it. Libraries beside the reader check
+// what they alone read: IndexedEnvironment::open several maps, VisibleLocalView::of visibility cells and portals.
 //
 // Memory: at most four times the file and its inflated chunks, and 1 MiB; the limits are checked before any of it
 // is allocated. Runtime tables take at most eight times the file and 1 MiB more, and as much again while they are

@@ -1,5 +1,5 @@
 // What a renderer holds of an open file: a pdf over directions or points, a few words by value. C++17,
-// freestanding over acdf/sample.h, local.h, brdf.h, table.h and indexed.h. For kernels define ACDF_FN and
+// freestanding over acdf/sample.h, local.h, brdf.h and table.h. For kernels define ACDF_FN and
 // ACDF_METHOD, for example as `static inline __host__ __device__` and __host__ __device__.
 //
 // Views come from acdf::File (acdf/reader.h). One that is made by default is empty, to be a member until it is

@@ -1,4 +1,5 @@
-// Every check of a file, once: `File` stops at the first error, `acdf validate` reports all.
+// What the reader checks of a file, once: `File` stops at the first error, `acdf validate` reports all. Libraries
+// beside the reader check what they alone read, as IndexedEnvironment::open and VisibleLocalView::of do.
 #pragma once
 
 #include "sources.h"

@@ -21,6 +21,7 @@ export interface Info {
     /** Of the runtime tables; 0: none. */
     tableBytes: number;
     parameterization: "latlong" | "octahedral" | "half-angle" | "table";
+    /** Always "variance": files of the other fits are refused. */
     fit: "uniform" | "cdf" | "pdf" | "variance";
     filter: "nearest" | "bilinear";
     bins: number;

@@ -2,10 +2,11 @@
 // pdf. C++17, header only, freestanding over acdf/product/cut_sample.h and acdf/brdf.h: no allocation, no
 // exceptions, no errors. For kernels define ACDF_METHOD, for example as __host__ __device__.
 //
-//   acdf::ProductSampler sampler(local.data(), acdf::BrdfLobe(brdf.data()));   // of a LocalEnvironmentView, a
-//   BrdfView auto point = sampler.at(acdf::surface_frame(normal), wo);                  // once a shading point
-//   acdf::ProductSample s = sampler.sample(point, u0, u1);                     // s.direction, s.pdf in sr^-1
-//   float p = sampler.pdf(point, direction);                                   // of any direction
+//   // of a VisibleLocalView or LocalEnvironmentView, and a BrdfView
+//   acdf::ProductSampler sampler(light.data(), acdf::BrdfLobe(brdf.data()));
+//   auto point = sampler.at(acdf::surface_frame(normal), wo); // once a shading point
+//   acdf::ProductSample s = sampler.sample(point, u0, u1);    // s.direction, s.pdf in sr^-1
+//   float p = sampler.pdf(point, direction);                  // of any direction
 //
 // The tiles of the local file are a hierarchy whose nodes store the light times cosine in them (Lawrence et al.
 // 2005, §7.1). `at` divides those nodes in which light times BRDF is large until a number of sub-regions is
