@@ -15,7 +15,7 @@ export interface Axis {
 }
 
 export interface Info {
-    kind: "environment" | "local" | "brdf" | "table";
+    kind: "environment" | "local" | "brdf" | "table" | "indexed";
     /** Of the file. */
     bytes: number;
     /** Of the runtime tables; 0: none. */

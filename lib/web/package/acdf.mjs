@@ -1,6 +1,6 @@
 // The reader of .acdf files, in WebAssembly. acdf.d.ts documents each call.
 
-const KINDS = {1: "environment", 2: "local", 3: "brdf", 4: "table"};
+const KINDS = {1: "environment", 2: "local", 3: "brdf", 4: "table", 5: "indexed"};
 const FITS = {1: "uniform", 2: "cdf", 3: "pdf", 4: "variance"};
 const PARAMETERIZATIONS = {1: "latlong", 2: "half-angle", 3: "table", 4: "octahedral"};
 const AXIS_BYTES = 48; // of AcdfAxis, format/acdf/layout.h
