@@ -15,6 +15,8 @@
 extern "C" {
 #endif
 
+/* ---- angles ---------------------------------------------------------------------------------------- */
+
 /* atan(t) for t in [-1, 1], interpolated at the Chebyshev nodes of t^2; error below 2e-7. */
 ACDF_FN1(ACDF_F32, acdf_atan_float, ACDF_F32, t) {
     ACDF_LET(ACDF_F32, q) = t * t;

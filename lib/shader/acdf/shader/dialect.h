@@ -6,8 +6,8 @@
 #ifndef ACDF_DIALECT_H
 #define ACDF_DIALECT_H
 
-#include <acdf/shader/dialect_c.h>
 #include <acdf/elementary.h>
+#include <acdf/shader/dialect_c.h>
 
 #define ACDF_DIALECT_FN ACDF_INLINE
 #define ACDF_U32 uint32_t

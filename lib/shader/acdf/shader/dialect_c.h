@@ -1,5 +1,5 @@
-/* Words of acdf/shader/dialect.h in C and its kin, in the reader as in what `acdf export` writes. A dialect says besides
- * what whole numbers and tables are called and how functions begin. */
+/* Words of acdf/shader/dialect.h in C and its kin, in the reader as in what `acdf export` writes. A dialect says
+ * besides what whole numbers and tables are called and how functions begin. */
 #ifndef ACDF_DIALECT_C_H
 #define ACDF_DIALECT_C_H
 

@@ -1,5 +1,5 @@
-/* Words of acdf/shader/dialect.h that languages share which declare as C does: all but WGSL. A dialect says what functions
- * begin with, ACDF_DIALECT_FN. */
+/* Words of acdf/shader/dialect.h that languages share which declare as C does: all but WGSL. A dialect says what
+ * functions begin with, ACDF_DIALECT_FN. */
 #ifndef ACDF_DIALECT_WORDS_H
 #define ACDF_DIALECT_WORDS_H
 

@@ -1,5 +1,6 @@
 /* Shading points of a local environment for shaders: what serves a normal, as acdf/local.h says, in floats,
- * over the words of acdf/shader/tree.h. One text for processors and for shaders of every language (acdf/shader/dialect.h).
+ * over the words of acdf/shader/tree.h. One text for processors and for shaders of every language
+ * (acdf/shader/dialect.h).
  */
 #ifndef ACDF_SHADER_POINT_H
 #define ACDF_SHADER_POINT_H

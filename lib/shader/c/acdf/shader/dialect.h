@@ -1,4 +1,4 @@
-// The words of the reader's acdf/shader/dialect.h in what head.txt makes C, C++, CUDA, HIP and OpenCL C of.
+// The words of acdf/shader/dialect.h in what head.txt makes C, C++, CUDA, HIP and OpenCL C of.
 #ifndef ACDF_DIALECT_H
 #define ACDF_DIALECT_H
 

@@ -1,4 +1,4 @@
-// The words of the reader's acdf/shader/dialect.h in HLSL and Slang.
+// The words of acdf/shader/dialect.h in HLSL and Slang.
 #ifndef ACDF_DIALECT_H
 #define ACDF_DIALECT_H
 

@@ -1,4 +1,4 @@
-// The words of the reader's acdf/shader/dialect.h in WGSL.
+// The words of acdf/shader/dialect.h in WGSL.
 #ifndef ACDF_DIALECT_H
 #define ACDF_DIALECT_H
 
