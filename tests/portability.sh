@@ -69,7 +69,8 @@ compile_builder() {
     ln -sfn /usr/include/oneapi "$work/tbb/oneapi"
     ln -sfn /usr/include/tbb "$work/tbb/tbb"
     for source in $(find lib/compress lib/build -name '*.cpp' | sort); do
-        "$cxx" -std=c++17 -Wall -Wextra -Werror -Wno-psabi -DACDF_VERSION='"0"' -fsyntax-only -Iformat -Ilib/reader -Ilib/curves -Ilib -Ilib/build \
+        "$cxx" -std=c++17 -Wall -Wextra -Werror -Wno-psabi -DACDF_VERSION='"0"' -fsyntax-only -Iformat -Ilib/reader -Ilib/curves -Ilib/indexed -Ilib/visibility -Ilib \
+            -Ilib/build -I"$zlib" \
             -isystem "$work/tbb" "$source"
         count=$((count + 1))
     done
@@ -85,7 +86,7 @@ batches() {
     mkdir -p "$work/highway"
     ln -sfn /usr/include/hwy "$work/highway/hwy"
     "$cxx" ${flags/-O1/-O2} -Wno-psabi -DACDF_ZLIB=0 -DHWY_COMPILE_ONLY_STATIC -Ilib/batch -isystem "$work/highway" -static \
-        tests/lib/batch/check_files.cpp $(find lib/reader lib/batch -name '*.cpp') -o "$work/$name/batches.exe"
+        tests/lib/batch/check_files.cpp $(find lib/reader lib/batch lib/curves -name '*.cpp') -o "$work/$name/batches.exe"
     echo "$name, $("$@" "$work/$name/batches.exe" tests/golden/v1.0/*.acdf)"
 }
 

@@ -7,6 +7,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#if defined(__BYTE_ORDER__) && defined(__ORDER_BIG_ENDIAN__)
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+#error "acdf files are little-endian and are read in place"
+#endif
+#endif
+
 #define ACDF_VERSION_MAJOR 1
 #define ACDF_VERSION_MINOR 0
 

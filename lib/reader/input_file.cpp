@@ -39,7 +39,10 @@ int open_file(const char* path) {
     auto* const wide = static_cast<wchar_t*>(std::malloc(static_cast<std::size_t>(length) * sizeof(wchar_t)));
     errno = wide ? EILSEQ : ENOMEM; // of a path that is not UTF-8
     const bool converted = wide && MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, wide, length) > 0;
-    const int file = converted ? ::_wopen(wide, _O_RDONLY | _O_BINARY | _O_NOINHERIT) : -1;
+    FileInfo info;
+    const bool folder = converted && ::_wstat64(wide, &info) == 0 && is_folder(info); // which cannot be opened
+    const int file = converted && !folder ? ::_wopen(wide, _O_RDONLY | _O_BINARY | _O_NOINHERIT) : -1;
+    if (folder) errno = EISDIR;
     std::free(wide);
     return file;
 }

@@ -4,6 +4,7 @@
 #include "build/builder/guard.h"
 #include "compress/halvings/coder.h"
 #include "compress/moving/sums.h"
+#include "compress/store/store.h"
 
 #include <acdf/builder.h>
 

@@ -1,5 +1,6 @@
 #include "compress/local/fit_separate.h"
 
+#include "compress/boxes.h"
 #include "compress/local/light.h"
 #include "compress/parallel.h"
 

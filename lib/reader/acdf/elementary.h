@@ -66,12 +66,6 @@
 #include <emmintrin.h>
 #endif
 
-#if defined(__BYTE_ORDER__) && defined(__ORDER_BIG_ENDIAN__)
-#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-#error "acdf files are little-endian and are read in place"
-#endif
-#endif
-
 #ifdef __cplusplus
 extern "C" {
 #endif
