@@ -26,9 +26,7 @@ struct Cell {
         const double area =
             2.0 * ACDF_PI * static_cast<double>(range[0].high - range[0].low) * acdf_grid_height(&grid, &range[1]);
         const double shape = acdf_tilt_pdf(tilted[0].tilt, t[0]) * acdf_tilt_pdf(tilted[1].tilt, t[1]);
-        const double pdf = p * static_cast<double>(grid.columns) / area * shape;
-        if (pdf >= 3.402823466e38) return 3.402823466e38f;
-        return pdf > 1.17549435e-38 ? static_cast<float>(pdf) : 1.17549435e-38f;
+        return acdf_positive_pdf(p * static_cast<double>(grid.columns) / area * shape);
     }
 
 private:

@@ -51,7 +51,7 @@ ACDF_INLINE float acdf_brdf_whole_pdf(const AcdfBrdf* brdf, double p, double pdf
     const double floor = (double)brdf->views->diffuse_share;
     if (floor > 0.0) pdf = (1.0 - floor) * pdf + (wi[2] > 0.0f ? floor / ACDF_PI * (double)wi[2] : 0.0);
     else if (!(p > 0.0)) return 0.0f;
-    return p > 0.0 || pdf > 1.17549435e-38 ? acdf_brdf_positive(pdf) : 0.0f;
+    return p > 0.0 || pdf > 1.17549435e-38 ? acdf_positive_pdf(pdf) : 0.0f;
 }
 
 /* The pdf of wi, whose position lies in a cell of probability p (0: none). */
@@ -123,7 +123,7 @@ ACDF_INLINE void acdf_brdf_unprepare(const AcdfBrdf* brdf, double sign, double u
     u[1] = floor + (1.0 - floor) * u[1];
 }
 
-/* Samples wi in a cell of probability p; u is what is left of the random numbers. */
+/* Samples wi in a cell of probability p; u: the random numbers, rescaled to [0, 1] in the cell. */
 ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfRange range[2],
                                           const double u[2], double sign, double p) {
     const double nothing[2] = {0.0, 0.0};

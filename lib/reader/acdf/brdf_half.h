@@ -144,10 +144,6 @@ ACDF_INLINE double acdf_brdf_mirror(double* u0) {
 ACDF_INLINE double acdf_brdf_mean_pdf(const AcdfBrdf* brdf, double p, double area, const AcdfBrdfPosition* place) {
     return p * (double)brdf->columns * (double)brdf->rows * place->length / (8.0 * ACDF_PI * place->dot * area);
 }
-ACDF_INLINE float acdf_brdf_positive(double pdf) {
-    if (pdf >= 3.402823466e38) return 3.402823466e38f;
-    return pdf > 1.17549435e-38 ? (float)pdf : 1.17549435e-38f;
-}
 
 #ifdef __cplusplus
 }

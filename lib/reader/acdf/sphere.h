@@ -43,15 +43,14 @@ ACDF_FN double acdf_row_z(uint32_t row, uint32_t rows) {
     return (1.0 - 2.0 * (double)south) * (1.0 - 2.0 * s * s);
 }
 
-/* Pdf per steradian of a cell of probability p whose solid angle is `area` over `columns`. */
-ACDF_FN float acdf_area_pdf(double p, uint32_t columns, double area) {
-    const double pdf = p * (double)columns / area;
+/* A pdf of what can be sampled, as a float: finite and > 0. */
+ACDF_FN float acdf_positive_pdf(double pdf) {
     if (pdf >= 3.402823466e38) return 3.402823466e38f;
     return pdf > 1.17549435e-38 ? (float)pdf : 1.17549435e-38f;
 }
-/* The same over `width` columns and a difference dz of cosines. */
+/* Pdf per steradian of a cell of probability p over `width` of `columns` columns and a difference dz of cosines. */
 ACDF_FN float acdf_cell_pdf(double p, uint32_t width, uint32_t columns, double dz) {
-    return acdf_area_pdf(p, columns, 2.0 * ACDF_PI * (double)width * dz);
+    return acdf_positive_pdf(p * (double)columns / (2.0 * ACDF_PI * (double)width * dz));
 }
 
 /* The whole sphere, before a tree narrows it. */

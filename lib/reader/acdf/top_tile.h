@@ -119,10 +119,7 @@ ACDF_INLINE void acdf_box_direction(const double* heights, const AcdfGrid* grid,
 }
 
 /* A pdf in the range of float: 0 stays 0. */
-ACDF_INLINE float acdf_float_pdf(double pdf) {
-    if (pdf >= 3.402823466e38) return 3.402823466e38f;
-    return pdf > 1.17549435e-38 ? (float)pdf : pdf > 0.0 ? 1.17549435e-38f : 0.0f;
-}
+ACDF_INLINE float acdf_float_pdf(double pdf) { return pdf > 0.0 ? acdf_positive_pdf(pdf) : 0.0f; }
 
 #ifdef __cplusplus
 }

@@ -129,9 +129,7 @@ ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const f
 /// Of the mixture, by those of its parts.
 template <class AnyLobe>
 ACDF_METHOD float ProductSampler<AnyLobe>::mixed(const Point& point, float light, float lobe) noexcept {
-    const double pdf = (1.0 - point.share) * double{light} + point.share * double{lobe};
-    if (!(pdf > 0.0)) return 0.0f;
-    return static_cast<float>(acdf_clamp(pdf, 1.17549435e-38, 3.402823466e38));
+    return acdf_float_pdf((1.0 - point.share) * double{light} + point.share * double{lobe});
 }
 
 template <class AnyLobe>

@@ -275,8 +275,7 @@ ACDF_FN uint32_t acdf_visible_portals_at(const AcdfPortalTable* table, const Acd
 ACDF_FN float acdf_visible_portals_mixed(const AcdfVisiblePortals* visible_portals, double of_portals,
                                          float of_row) {
     const double pdf = visible_portals->of_row * (double)of_row + (1.0 - visible_portals->of_row) * of_portals;
-    if (!(pdf > 0.0)) return 0.0f;
-    return (float)acdf_clamp(pdf, 1.17549435e-38, 3.402823466e38);
+    return acdf_float_pdf(pdf);
 }
 
 /* Where a unit direction meets a visible_portal: its piece, and the weight per steradian there for a density of 1.
@@ -358,7 +357,8 @@ ACDF_OUTLINE_ON_CPU float acdf_visible_portals_pdf(const AcdfPortalEye* eye,
                                       sum / acdf_visible_portals_weight(eye->table, visible_portals), row);
 }
 
-/* Whether u[0] samples through a visible_portal, not by the row; what is left of it takes its place. */
+/* Returns 1 where u[0] samples through a portal, 0 where it samples by the row; rescales u[0] to [0, 1] in that
+ * part. */
 ACDF_FN int acdf_visible_portals_choose(const AcdfVisiblePortals* visible_portals, double* u) {
     if (u[0] < visible_portals->of_row) {
         u[0] = acdf_unit_interval(u[0] / visible_portals->of_row);
@@ -368,7 +368,8 @@ ACDF_FN int acdf_visible_portals_choose(const AcdfVisiblePortals* visible_portal
     return 1;
 }
 
-/* The one of `count` parts of weights, some > 0, that *u of all samples; what is left of it takes its place. */
+/* Samples one of `count` parts in proportion to their weights, some of which are > 0; rescales *u to [0, 1] in it.
+ */
 ACDF_FN uint32_t acdf_sample_part(const double* weight, uint32_t count, double* u) {
     double x = 0.0;
     uint32_t i, last = 0;
