@@ -71,6 +71,13 @@ void name_file(AcdfError& status, const char* path) {
 
 } // namespace
 
+void set_grid(const Parts& parts, AcdfEnvironment& environment) noexcept {
+    environment.columns = parts.axes[ACDF_AXIS_PHI].resolution;
+    environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
+    environment.total = parts.description->total;
+    environment.parameterization = parts.description->parameterization;
+}
+
 bool first_error(const Finding& finding, void* status) {
     if (code_of(finding.number) == ACDF_OK) return true;
 #ifdef ACDF_ENVIRONMENT_ONLY
@@ -131,10 +138,7 @@ void give_memory(AcdfFile& file) noexcept {
 void take_parts(const Parts& parts, AcdfFile& file) noexcept {
     static_cast<Contents&>(file) = parts;
     if (file.kind() != ACDF_KIND_ENVIRONMENT) return;
-    file.environment.columns = parts.axes[ACDF_AXIS_PHI].resolution;
-    file.environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
-    file.environment.total = parts.description->total;
-    file.environment.parameterization = parts.description->parameterization;
+    set_grid(parts, file.environment);
     file.environment.partner = parts.partner;
     if (parts.bins) file.environment.root = parts.bins[0].root;
 }

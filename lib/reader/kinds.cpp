@@ -11,13 +11,8 @@ void make_local(const Parts& parts, AcdfFile& file) {
     const AcdfDescription& description = *parts.description;
     AcdfLocal& local = file.local;
     // Its environment is complete, whatever the file is made for: it has no partner.
-    local.environment.columns = parts.axes[ACDF_AXIS_PHI].resolution;
-    local.environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
-    local.environment.total = description.total;
-    local.environment.parameterization = description.parameterization;
-    local.environment.halved = file.environment.halved;
-    local.environment.curves = file.environment.curves;
-    local.environment.tree = file.environment.tree;
+    local.environment = file.environment;
+    set_grid(parts, local.environment);
     local.rows_of_normals = file.rows;
     local.partner = parts.partner;
     local.bins = parts.bins;

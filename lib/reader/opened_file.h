@@ -29,6 +29,9 @@ struct AcdfFile : acdf::Contents {
 
 namespace acdf {
 
+/// Sets what an environment has of the axes and the description of a file.
+void set_grid(const Parts& parts, AcdfEnvironment& environment) noexcept;
+
 /// A FindingSink: `status`, an AcdfError, becomes that of the first error.
 bool first_error(const Finding& finding, void* status);
 

@@ -53,7 +53,7 @@ int inflate_chunk(const AcdfChunk& chunk, const u8* bytes, const AcdfCurves* cur
 
 int known_chunk(u32 type) noexcept {
     for (int i = 0; i < known_chunks; ++i)
-        if (known_types[i] == type) return i;
+        if (known_rules[i].type == type) return i;
     return -1;
 }
 

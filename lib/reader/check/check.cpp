@@ -117,28 +117,8 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
 
 // ---- chunk table ----------------------------------------------------------------------------------------
 
-// In files of which kinds a known chunk may be, and must be with HALV and without it, a bit each; whether readers
-// that do not know it must refuse the file.
-struct ChunkRule {
-    u8 may, must_halved, must_curved;
-    bool critical;
-};
-constexpr ChunkRule rules_of[known_chunks] = {
-    {0x3E, 0x3E, 0x3E, true},  // DESC
-    {0x3E, 0x1C, 0x1E, true},  // BINS
-    {0x2E, 0x00, 0x0E, true},  // TREE
-    {0x3E, 0x00, 0x00, false}, // META
-    {0x04, 0x00, 0x00, true},  // LOCL: rule 7005
-    {0x08, 0x00, 0x00, true},  // VIEW: rule 8003
-    {0x16, 0x00, 0x00, true},  // COMP
-    {0x04, 0x00, 0x00, false}, // PLAC
-    {0x04, 0x00, 0x00, false}, // PORT
-    {0x3E, 0x3E, 0x30, true},  // HALV
-    {0x20, 0x20, 0x20, true},  // MAPS
-    {0x0C, 0x0C, 0x00, true},  // NORM
-};
 bool is_of(u8 kinds, u32 kind) { return kind - 1 > 4 || (kinds >> kind & 1); }
-bool belongs(int known, u32 kind) { return is_of(rules_of[known].may, kind); }
+bool belongs(int known, u32 kind) { return is_of(known_rules[known].may, kind); }
 
 bool is_all_printable(u32 type) {
     return is_printable(type, 0) && is_printable(type, 1) && is_printable(type, 2) && is_printable(type, 3);
@@ -167,7 +147,7 @@ void check_type_and_flags(const ChunkTable& table, u32 i, u32 kind, Report& repo
         report.add(3005, at + offsetof(AcdfChunk, codec), "codec %u of '%s' is unknown", chunk.codec, name.text);
     if ((chunk.flags & ~ACDF_CHUNK_FLAG_CRITICAL) != 0)
         report.add(3009, at + offsetof(AcdfChunk, flags), "unknown flags of '%s'", name.text);
-    else if (known >= 0 && critical != rules_of[known].critical)
+    else if (known >= 0 && critical != known_rules[known].critical)
         report.add(3009, at + offsetof(AcdfChunk, flags), "'%s' is marked %s", name.text,
                    critical ? "critical" : "ancillary");
     if (chunk.reserved != 0)
@@ -217,9 +197,9 @@ bool has_chunk(const ChunkTable& table, u32 type) {
 void check_required(const ChunkTable& table, u32 kind, Report& report) {
     const bool halved = has_chunk(table, ACDF_CHUNK_HALVINGS);
     for (int i = 0; i < known_chunks && kind - 1 < 5; ++i)
-        if (is_of(halved ? rules_of[i].must_halved : rules_of[i].must_curved, kind) &&
-            !has_chunk(table, known_types[i]))
-            report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(known_types[i]).text);
+        if (is_of(halved ? known_rules[i].must_halved : known_rules[i].must_curved, kind) &&
+            !has_chunk(table, known_rules[i].type))
+            report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(known_rules[i].type).text);
 }
 
 void check_table(ChunkTable& table, const AcdfHeader& header, u64 size, Report& report) {

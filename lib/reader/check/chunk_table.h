@@ -15,11 +15,21 @@ struct ChunkTable {
     u64 end() const { return offset_of(count); }
 };
 
-/// Types of chunks that are known, in the order of KnownChunk.
-constexpr u32 known_types[known_chunks] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS,       ACDF_CHUNK_TREE,
-                                           ACDF_CHUNK_METADATA,    ACDF_CHUNK_LOCAL,      ACDF_CHUNK_VIEWS,
-                                           ACDF_CHUNK_PARTNER,     ACDF_CHUNK_VISIBILITY, ACDF_CHUNK_PORTALS,
-                                           ACDF_CHUNK_HALVINGS,    ACDF_CHUNK_MAPS,       ACDF_CHUNK_NORMALS};
+/// What is known of a type of chunk.
+struct ChunkRule {
+    u32 type;
+    /// In files of which kinds it may be, and must be with HALV and without it, a bit each.
+    u8 may, must_halved, must_curved;
+    bool critical; ///< whether readers that do not know it must refuse the file
+};
+/// In the order of KnownChunk. LOCL and VIEW that are missing are rules 7005 and 8003.
+constexpr ChunkRule known_rules[known_chunks] = {
+    {ACDF_CHUNK_DESCRIPTION, 0x3E, 0x3E, 0x3E, true}, {ACDF_CHUNK_BINS, 0x3E, 0x1C, 0x1E, true},
+    {ACDF_CHUNK_TREE, 0x2E, 0x00, 0x0E, true},        {ACDF_CHUNK_METADATA, 0x3E, 0x00, 0x00, false},
+    {ACDF_CHUNK_LOCAL, 0x04, 0x00, 0x00, true},       {ACDF_CHUNK_VIEWS, 0x08, 0x00, 0x00, true},
+    {ACDF_CHUNK_PARTNER, 0x16, 0x00, 0x00, true},     {ACDF_CHUNK_VISIBILITY, 0x04, 0x00, 0x00, false},
+    {ACDF_CHUNK_PORTALS, 0x04, 0x00, 0x00, false},    {ACDF_CHUNK_HALVINGS, 0x3E, 0x3E, 0x30, true},
+    {ACDF_CHUNK_MAPS, 0x20, 0x20, 0x20, true},        {ACDF_CHUNK_NORMALS, 0x0C, 0x0C, 0x00, true}};
 
 /// The number of a chunk among those that this reader knows, or -1.
 int known_chunk(u32 type) noexcept;
