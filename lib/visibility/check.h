@@ -5,8 +5,6 @@
 
 #include <acdf/visibility/visible_local.h>
 
-#include <type_traits>
-
 namespace acdf {
 
 /// Of a code of a column: the share of the lower side.
@@ -22,17 +20,7 @@ ACDF_ONCE void check_portals(const Payload& payload, u32 rows, Report& report, A
 ACDF_ONCE Verdict check_visibility(const AcdfFile& file, FindingSink sink, void* context,
                                    AcdfVisibleLocal& view) noexcept;
 
-/// The same with any callable `sink(const Finding&)`, without the view.
-template <class Sink>
-Verdict validate_visibility(const AcdfFile& file, Sink&& sink) {
-    AcdfVisibleLocal view = {};
-    return check_visibility(
-        file,
-        [](const Finding& finding, void* context) {
-            (*static_cast<std::remove_reference_t<Sink>*>(context))(finding);
-            return true;
-        },
-        const_cast<void*>(static_cast<const void*>(&sink)), view);
-}
+/// The same without the view: what `validate` goes on with where it found no error.
+Verdict validate_visibility(const File& file, FindingSink sink, void* context) noexcept;
 
 } // namespace acdf

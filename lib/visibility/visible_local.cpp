@@ -41,6 +41,11 @@ Verdict check_visibility(const AcdfFile& file, FindingSink sink, void* context, 
     return report.verdict();
 }
 
+Verdict validate_visibility(const File& file, FindingSink sink, void* context) noexcept {
+    AcdfVisibleLocal view = {};
+    return check_visibility(*file.get(), sink, context, view);
+}
+
 } // namespace acdf
 
 int acdf_visible_local(const AcdfFile* file, AcdfVisibleLocal* out, AcdfError* error) {

@@ -14,9 +14,8 @@ Verdict validate_all(const std::vector<std::uint8_t>& bytes, const std::function
     File file;
     if (!verdict.valid() || !File::from_memory(bytes.data(), bytes.size(), file, with_curves()).ok())
         return verdict;
-    AcdfVisibleLocal view = {};
     const Verdict beside = file.kind() == ACDF_KIND_INDEXED ? validate_maps(file, sink, context)
-                                                            : check_visibility(*file.get(), sink, context, view);
+                                                            : validate_visibility(file, sink, context);
     return {beside.errors, verdict.warnings + beside.warnings};
 }
 

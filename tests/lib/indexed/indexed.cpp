@@ -19,23 +19,15 @@ using namespace acdf_test;
 
 namespace {
 
-class OpenedMaps {
+class OpenedMaps : public OpenedFile {
 public:
-    explicit OpenedMaps(const IndexedSpec& spec, bool tables = true) : bytes_(spec.encode()) {
-        acdf::LoadOptions options;
-        options.tables = tables;
-        acdf::Status status = acdf::File::from_memory(bytes_.data(), bytes_.size(), file_, options);
-        EXPECT_TRUE(status.ok()) << status.message;
-        status = acdf::IndexedEnvironment::open(file_, view_);
+    explicit OpenedMaps(const IndexedSpec& spec, bool tables = true) : OpenedFile(spec.encode(), tables) {
+        const acdf::Status status = acdf::IndexedEnvironment::open(file(), view_);
         EXPECT_TRUE(status.ok()) << status.message;
     }
     const acdf::IndexedEnvironment& view() const { return view_; }
-    const acdf::File& file() const { return file_; }
-    const Bytes& bytes() const { return bytes_; }
 
 private:
-    Bytes bytes_;
-    acdf::File file_;
     acdf::IndexedEnvironment view_;
 };
 

@@ -26,15 +26,7 @@ inline Findings findings_with_maps(const Bytes& bytes, const acdf::Limits& limit
     acdf::File file;
     if (!acdf::File::from_memory(exact.data(), exact.size(), file, acdf::with_curves(limits)).ok()) return out;
     if (file.kind() != ACDF_KIND_INDEXED) return out;
-    const acdf::FindingSink sink = [](const acdf::Finding& finding, void* found) {
-        auto& to = *static_cast<Findings*>(found);
-        to.rules.insert(finding.number);
-        to.last_offset = finding.offset;
-        to.text +=
-            std::to_string(finding.number) + " at " + std::to_string(finding.offset) + ": " + finding.detail + "\n";
-        return true;
-    };
-    acdf::validate_maps(file, sink, &out);
+    acdf::validate_maps(file, Findings::take, &out);
     return out;
 }
 

@@ -13,6 +13,7 @@
 #include <memory>
 #include <set>
 #include <sstream>
+#include <utility>
 
 namespace acdf_test {
 
@@ -43,25 +44,44 @@ inline acdf::Status load(const Bytes& bytes, const acdf::Limits& limits = {}) {
     return acdf::File::from_memory(exact.data(), exact.size(), file, acdf::with_curves(limits));
 }
 
+/// A file that stays open, and must be right.
+class OpenedFile {
+public:
+    explicit OpenedFile(Bytes bytes, bool tables = true) : bytes_(std::move(bytes)) {
+        acdf::LoadOptions options;
+        options.tables = tables;
+        const acdf::Status status = acdf::File::from_memory(bytes_.data(), bytes_.size(), file_, options);
+        EXPECT_TRUE(status.ok()) << status.message;
+    }
+    const acdf::File& file() const { return file_; }
+    const Bytes& bytes() const { return bytes_; }
+
+private:
+    Bytes bytes_;
+    acdf::File file_;
+};
+
 struct Findings {
     std::multiset<int> rules;
     std::string text; ///< one line each
     std::uint64_t last_offset = 0;
+
+    /// A FindingSink, of which these are the context.
+    static bool take(const acdf::Finding& finding, void* findings) {
+        auto& to = *static_cast<Findings*>(findings);
+        to.rules.insert(finding.number);
+        to.last_offset = finding.offset;
+        std::ostringstream line;
+        line << finding.number << " at " << finding.offset << ": " << finding.detail << '\n';
+        to.text += line.str();
+        return true;
+    }
 };
 
 inline Findings findings(const Bytes& bytes, const acdf::Limits& limits = {}) {
     const Exact exact(bytes);
     Findings out;
-    std::ostringstream text;
-    acdf::validate(
-        exact.data(), exact.size(),
-        [&](const acdf::Finding& finding) {
-            out.rules.insert(finding.number);
-            out.last_offset = finding.offset;
-            text << finding.number << " at " << finding.offset << ": " << finding.detail << '\n';
-        },
-        acdf::with_curves(limits));
-    out.text = text.str();
+    acdf::validate(exact.data(), exact.size(), Findings::take, &out, acdf::with_curves(limits));
     return out;
 }
 

@@ -17,24 +17,14 @@ using namespace acdf_test;
 
 namespace {
 
-class OpenedNormals {
+class OpenedNormals : public OpenedFile {
 public:
-    explicit OpenedNormals(const NormalsSpec& spec, bool tables = true) : bytes_(spec.encode()) {
-        acdf::LoadOptions options;
-        options.tables = tables;
-        const acdf::Status status = acdf::File::from_memory(bytes_.data(), bytes_.size(), file_, options);
-        EXPECT_TRUE(status.ok()) << status.message;
-    }
-    acdf::LocalEnvironmentView view() const { return file_.local(); }
+    explicit OpenedNormals(const NormalsSpec& spec, bool tables = true) : OpenedFile(spec.encode(), tables) {}
+    acdf::LocalEnvironmentView view() const { return file().local(); }
     AcdfGrid grid() const {
         const AcdfEnvironment whole = view().environment().data();
         return acdf_environment_grid(&whole);
     }
-    const Bytes& bytes() const { return bytes_; }
-
-private:
-    Bytes bytes_;
-    acdf::File file_;
 };
 
 using AnyVector = std::array<float, 3>;

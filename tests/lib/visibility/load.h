@@ -24,13 +24,7 @@ inline Findings visible_findings(const Bytes& bytes) {
     const Exact exact(bytes);
     acdf::File file;
     if (!acdf::File::from_memory(exact.data(), exact.size(), file, acdf::with_curves()).ok()) return out;
-    std::ostringstream text;
-    acdf::validate_visibility(*file.get(), [&](const acdf::Finding& finding) {
-        out.rules.insert(finding.number);
-        out.last_offset = finding.offset;
-        text << finding.number << " at " << finding.offset << ": " << finding.detail << '\n';
-    });
-    out.text += text.str();
+    acdf::validate_visibility(file, Findings::take, &out);
     return out;
 }
 
